@@ -1,0 +1,115 @@
+"""A truncated expansion of the growth rate, with its parameters, as formulas and as a fast function of k.
+
+    sigma = sum of c_p g^p,  g the gauge (usually k), p rational, c_p exact in the parameters
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import sympy as sp
+
+k = sp.Symbol("k", positive=True)
+
+
+class StillSymbolic(ValueError):
+    """A number is asked for while a parameter has no value."""
+
+
+@dataclass(frozen=True)
+class Expansion:
+    """Terms of a quantity (the complex growth rate sigma, unless `quantity` says otherwise) in powers of a gauge.
+
+    terms        {power: exact coefficient}, in increasing order; a power that is known to vanish is 0
+    next_power   power of the first term left out: the order at which the error must fall
+    parameters   {name: value, or None while symbolic}
+    factor       what multiplies the whole sum (k for an expansion in another gauge at fixed k)
+    """
+
+    flow: str
+    regime: str
+    terms: Mapping[sp.Rational, sp.Expr]
+    next_power: sp.Rational
+    parameters: Mapping[str, sp.Expr | None]
+    gauge: sp.Symbol = k
+    quantity: str = "sigma"
+
+    @cached_property
+    def expression(self) -> sp.Expr:
+        return sp.Add(*(c * self.gauge**power for power, c in self.terms.items()), evaluate=True)
+
+    @property
+    def growth_rate(self) -> sp.Expr:
+        """Real part of sigma."""
+        return self._part(sp.re)
+
+    @property
+    def phase_speed(self) -> sp.Expr:
+        """Real part of i sigma/k: positive downstream."""
+        return self._part(lambda c: -sp.im(c) / k)
+
+    def coefficient(self, power) -> sp.Expr:
+        return self.terms[sp.Rational(power)]
+
+    def values(self) -> dict[sp.Rational, complex | None]:
+        """The coefficients as numbers; None while a parameter is symbolic."""
+        return {power: _number(c) for power, c in self.terms.items()}
+
+    def with_parameters(self, **values) -> "Expansion":
+        """The same expansion with numbers (or expressions) for some of its parameters."""
+        unknown = set(values) - set(self.parameters)
+        if unknown:
+            raise StillSymbolic(f"{self.flow}, regime {self.regime}, has no parameter {', '.join(sorted(unknown))}; "
+                                f"it has {', '.join(self.parameters)}")
+        exact = {name: sp.nsimplify(value, rational=True) for name, value in values.items()}
+        substitution = {symbol: exact[symbol.name] for symbol in self._symbols if symbol.name in exact}
+        terms = {power: c.subs(substitution) for power, c in self.terms.items()}
+        return replace(self, terms=terms, parameters={**self.parameters, **exact})
+
+    def truncated(self, power) -> "Expansion":
+        """Only the terms up to `power`; the next one that does not vanish sets the order of the error."""
+        power = sp.Rational(power)
+        left_out = [p for p, c in self.terms.items() if p > power and c != 0]
+        terms = {p: c for p, c in self.terms.items() if p <= power}
+        return replace(self, terms=terms, next_power=min([*left_out, self.next_power]))
+
+    def function(self, **values) -> Callable:
+        """A numpy function of the gauge (shape in, same shape out, complex), all parameters being numbers.
+
+        >>> from asymptotics.flows import vortex
+        >>> sigma = vortex.long_wave().function(slope_deg=45, Fr2=0)
+        >>> print(f"{sigma(0.1).real:.7f}")
+        -0.0039539
+        """
+        import numpy as np
+
+        coefficients = self.with_parameters(**values).values()
+        missing = [name for name, value in self.parameters.items() if value is None and name not in values]
+        if any(c is None for c in coefficients.values()):
+            raise StillSymbolic(f"the expansion still depends on {', '.join(missing)}; give values, e.g. {missing[0]}=1")
+        pairs = [(c, float(power)) for power, c in coefficients.items()]
+
+        def series(gauge):
+            gauge = np.asarray(gauge, dtype=float)
+            return sum((c * gauge**power for c, power in pairs), np.zeros_like(gauge, dtype=complex))
+
+        return series
+
+    @property
+    def _symbols(self) -> list[sp.Symbol]:
+        free = set().union(*(c.free_symbols for c in self.terms.values()))
+        return sorted(free, key=str)
+
+    def _part(self, part) -> sp.Expr:
+        return sp.Add(*(part(sp.expand_complex(c) if c.is_Number else c) * self.gauge**power
+                        for power, c in self.terms.items()))
+
+
+def power_of_i(power) -> sp.Expr:
+    """i^power on the principal branch, as cos + i sin."""
+    angle = sp.pi * sp.Rational(power) / 2
+    return sp.cos(angle) + sp.I * sp.sin(angle)
+
+
+def _number(expression: sp.Expr) -> complex | None:
+    return None if expression.free_symbols else complex(expression.evalf(20))
