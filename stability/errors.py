@@ -1,0 +1,21 @@
+"""What can go wrong, by name. Messages say what was asked, what was found and what to try."""
+
+
+class StabilityError(Exception):
+    """Base of all errors of this package."""
+
+
+class ParameterError(StabilityError, ValueError):
+    """A parameter lies outside its range."""
+
+
+class ConditionCount(StabilityError):
+    """The conditions of a flow do not match the order of its layers."""
+
+
+class NotResolved(StabilityError):
+    """The tolerance is not met at the largest degree allowed."""
+
+
+class ModeLost(StabilityError):
+    """A mode could not be followed without risking a jump to another one."""

@@ -1,0 +1,78 @@
+"""What every flow is: a frozen dataclass of numbers with layers, conditions and a long-wave limit."""
+
+from dataclasses import dataclass, field, fields
+from math import isfinite
+from typing import ClassVar
+
+from ..errors import ParameterError
+
+
+def parameter(default, low=None, high=None, *, meaning, reason="", unbounded=False):
+    """Declare a numeric parameter with its open range low < value < high, its meaning and the reason.
+
+    `unbounded` admits inf as a value.
+    """
+    return field(default=default, metadata={"low": low, "high": high, "meaning": meaning,
+                                            "reason": reason, "unbounded": unbounded})
+
+
+def choice(*options, meaning):
+    """Declare a parameter that takes one of a few names; the first is the default."""
+    return field(default=options[0], metadata={"options": options, "meaning": meaning})
+
+
+@dataclass(frozen=True)
+class Flow:
+    """A parallel base flow as a boundary-value problem in (k, sigma).
+
+    A subclass gives `layers(names)` and `conditions(edges, names)`, where `names` holds the symbols k,
+    rate, its `surfaces` (amplitudes of displaced surfaces) and its `functions` of k; `edges.<layer>` is
+    the pair of edges (s = 0, s = 1) with their fields v, w, t, n. See `stability.layer` for the scaling.
+    """
+
+    name: ClassVar[str]
+    title: ClassVar[str]
+    scales: ClassVar[str]
+    order: ClassVar[int] = 0  # sigma = k^(1 + order) * rate
+    surfaces: ClassVar[tuple[str, ...]] = ()
+    functions: ClassVar[tuple[str, ...]] = ()
+
+    def __post_init__(self):
+        for item in fields(self):
+            value = check_parameter(self.name, item, getattr(self, item.name))
+            object.__setattr__(self, item.name, value)
+
+    def evaluate(self, k):
+        """Return {name: (value, slope in k, absolute error)} of the functions of k, arrays like k."""
+        return {}
+
+    def long_wave(self, k):
+        """Return the leading-order growth rate sigma of the slow surface mode as k -> 0."""
+        raise NotImplementedError(f"{self.name} has no slow surface mode: ask for mode='most-unstable'")
+
+
+def check_parameter(flow, item, value):
+    """Return the value as a float (or one of the options), or raise a `ParameterError` that says why not."""
+    rule = item.metadata
+    if "options" in rule:
+        if value not in rule["options"]:
+            raise ParameterError(f"{flow}: {item.name} must be one of {', '.join(rule['options'])} (got {value!r})")
+        return value
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise ParameterError(f"{flow}: {item.name} must be a number in {allowed(rule)} (got {value!r})") from None
+    inside = (rule["low"] is None or number > rule["low"]) and (rule["high"] is None or number < rule["high"])
+    if not inside or not (isfinite(number) or rule["unbounded"] and number > 0):
+        reason = f": {rule['reason']}" if rule["reason"] else ""
+        raise ParameterError(f"{flow}: {item.name} must lie in {allowed(rule)}{reason} (got {number:g})")
+    return number
+
+
+def allowed(rule):
+    """The admissible values in words: `(1, inf)` is open, `(0, inf]` admits inf, `a | b` is a choice."""
+    if "options" in rule:
+        return " | ".join(rule["options"])
+    low = "-inf" if rule["low"] is None else f"{rule['low']:g}"
+    high = "inf" if rule["high"] is None else f"{rule['high']:g}"
+    return f"({low}, {high}{']' if rule['unbounded'] else ')'}"

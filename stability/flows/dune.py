@@ -1,0 +1,129 @@
+"""Growth of dunes: a mu(I) granular bed sheared by a viscous fluid (Cawthorn's thesis, section 4.2)."""
+
+from dataclasses import dataclass
+from math import inf, isinf, sqrt
+from typing import ClassVar
+
+import numpy as np
+
+from .. import wavy_wall
+from ..layer import Layer, Profile
+from .base import Flow, choice, parameter
+
+
+@dataclass(frozen=True)
+class Dune(Flow):
+    """Perturbations exp(i k x + sigma t) of a granular bed under a fluid in linear shear.
+
+    The bed (4.64)-(4.70) flows between its yield surface z = 1 - shields and the interface z = 0. The
+    fluid (4.59)-(4.63) adjusts at once to the shape of the bed, as over a rigid wall. It enters by the
+    closed form of its wall stress, or (`fluid="layer"`) as a second layer of the same eigenproblem.
+    """
+
+    name: ClassVar[str] = "dune"
+    title: ClassVar[str] = "dunes on a granular bed sheared by a viscous fluid"
+    scales: ClassVar[str] = ("length: grain diameter d; time: sqrt(d/g'); granular velocity: sqrt(g' d); "
+                             "Re: fluid shear rate * d^2 / viscosity; depth: fluid depth / d")
+    surfaces: ClassVar[tuple[str, ...]] = ("s0",)
+
+    shields: float = parameter(2.0, 1, meaning="fluid shear stress over the yield stress of the bed, thesis (4.54)",
+                               reason="at or below 1 the bed does not yield")
+    mu1: float = parameter(0.4, 0, meaning="static friction coefficient, thesis (4.48)")
+    b: float = parameter(1.0, 0, meaning="rate coefficient of friction mu1 (1 + b I), thesis (4.48)")
+    Re: float = parameter(10.0, 0, meaning="Reynolds number of the fluid on the grain scale, thesis (4.39)")
+    depth: float = parameter(inf, 0, meaning="fluid depth in grain diameters; inf: unbounded fluid", unbounded=True)
+    fluid: str = choice("closed-form", "layer", meaning="wall stress in closed form, or a second layer")
+
+    @property
+    def functions(self):
+        if self.fluid == "closed-form":
+            return ("R",)
+        return ("H",) if isinf(self.depth) else ()
+
+    def evaluate(self, k):
+        if self.fluid == "closed-form":
+            response = wavy_wall.response(k, self.Re, self.depth)
+            return {"R": (response.value, response.derivative, response.error)}
+        return {"H": _vorticity_depth(k, self.Re)} if isinf(self.depth) else {}
+
+    def layers(self, names):
+        bed = Layer("bed", lambda s: bed_profile(s, self._excess, self.mu1, self.b), singular=1)
+        if self.fluid == "closed-form":
+            return (bed,)
+        height = names.H if isinf(self.depth) else self.depth
+        return bed, Layer("fluid", lambda s: fluid_profile(s, height, self.Re), steady=True)
+
+    def conditions(self, edges, names):
+        """No flow below the yield surface; pressure of a monolayer and fluid stress on the moving interface."""
+        k, s0 = names.k, names.s0
+        yielding, surface = edges.bed
+        normal_strain = 2 * k * self.mu1 * self.shields * surface.v  # p + n: 2 eta times the strain rate
+        bed = (
+            yielding.w,
+            normal_strain - surface.n - s0,
+            (names.rate + 1j * self._surface_speed) * s0 - surface.w,
+        )
+        stress = self.mu1 * self.shields
+        if self.fluid == "closed-form":
+            return (*bed, surface.t - 1j * stress * names.R * s0)
+        wall, top = edges.fluid
+        return (*bed, surface.t - stress * self.Re * wall.t, wall.v - 1j * s0, wall.w, *self._far(top, k))
+
+    def _far(self, top, k):
+        """No slip on a lid; irrotational decay exp(-k z) above the vorticity of an unbounded fluid."""
+        if isinf(self.depth):
+            return top.v + k * top.w, top.t - 2 * k**2 / self.Re * top.w
+        return top.v, top.w
+
+    def long_wave(self, k):
+        """sigma = i k (2 shields / 3 b) (r - 1)^2 (r + 2) R, r = sqrt(shields): thesis (4.81), (4.84) for any R."""
+        response = wavy_wall.response(k, self.Re, self.depth).value
+        return 2j * k * self.shields / (3 * self.b) * self._excess**2 * (self._excess + 3) * response
+
+    @property
+    def _excess(self):
+        """sqrt(shields) - 1 without cancellation."""
+        return (self.shields - 1) / (sqrt(self.shields) + 1)
+
+    @property
+    def _surface_speed(self):
+        return 2 * self._excess**2 * (2 * self._excess + 3) / (3 * self.b)
+
+
+def bed_profile(s, excess, mu1, b):
+    """Base state in zeta = sqrt(1 - z), from r = sqrt(shields) = 1 + excess at the yield surface to 1.
+
+    Velocity gradient (r^2 - zeta^2) / (b zeta), thesis (4.52), pressure zeta^2, friction law (4.48). The
+    velocity is u = U' v, so that the equations have a regular singular point at the yield surface.
+    """
+    r = 1 + excess
+    depth = excess * s  # r - zeta
+    zeta = r - depth
+    shear_rate = depth * (r + zeta) / (b * zeta)
+    return Profile(
+        dz=2 * excess * zeta,
+        U=2 * depth**2 * (3 * r - depth) / (3 * b),
+        dU=shear_rate,
+        eta=mu1 * r**2 / shear_rate,
+        beta=mu1 * b * zeta,
+        alpha=mu1 * (r**2 + zeta**2) / (2 * zeta**2),
+        g=shear_rate,
+        dg=excess * (r**2 + zeta**2) / (b * zeta**2),
+    )
+
+
+def fluid_profile(s, height, Re):
+    """Newtonian fluid in linear shear U = z, 0 <= z <= height."""
+    return Profile(dz=height, U=height * s, dU=1.0, eta=1 / Re, beta=1 / Re)
+
+
+def _vorticity_depth(k, Re):
+    """Height above which the vorticity over a wavy wall is below rounding, and its slope in k.
+
+    The vorticity is an Airy function: it decays like exp(-k z) and like exp(-(sqrt(2)/3) |f z|^{3/2}),
+    |f|^3 = k Re; either exponent reaches 40 at the height returned.
+    """
+    a, c = k / 50, (k * Re) ** (1 / 3) / 25
+    height = (a**3 + c**3) ** (-1 / 3)
+    slope = -(height**4) * (a**3 + c**3 / 3) / k
+    return height, slope, np.zeros_like(height)

@@ -1,0 +1,56 @@
+"""Longitudinal vortices in granular flow down an inclined plane (Cawthorn's thesis, section 4.1)."""
+
+from dataclasses import dataclass
+from math import radians, tan
+from typing import ClassVar
+
+from ..layer import Layer, Profile
+from .base import Flow, parameter
+
+
+@dataclass(frozen=True)
+class Vortex(Flow):
+    """Cross-slope perturbations exp(i k y + sigma t) of mu(I) flow down a rough plane.
+
+    The fourth-order subsystem (4.14), (4.15), (4.17), (4.19)-(4.21). The down-slope velocity (4.13),
+    (4.18) is slaved to it: it adds no surface mode and feeds nothing back, so it is left out, and the
+    friction law enters through mu = tan(slope) alone. All coefficients are real.
+    """
+
+    name: ClassVar[str] = "vortex"
+    title: ClassVar[str] = "longitudinal vortices in granular flow down an inclined plane"
+    scales: ClassVar[str] = ("length: depth h of the layer; velocity: I(tan slope) sqrt(phi g h cos slope) h/d; "
+                             "time: h over velocity; Fr2: velocity^2 / (g h cos slope), thesis (4.6)")
+    order: ClassVar[int] = 1
+    surfaces: ClassVar[tuple[str, ...]] = ("s0",)
+
+    slope_deg: float = parameter(30.0, 0, 90, meaning="inclination of the plane, degrees")
+    Fr2: float = parameter(0.1, 0, meaning="squared Froude number, thesis (4.6)")
+
+    def layers(self, names):
+        mu = tan(radians(self.slope_deg))
+        return (Layer("grains", lambda s: profile(s, mu, self.Fr2)),)
+
+    def conditions(self, edges, names):
+        """No slip on the plane; no stress on the displaced surface, which moves with the grains."""
+        wall, surface = edges.grains
+        return (
+            wall.v,
+            wall.w,
+            surface.t,
+            surface.n + names.s0,
+            names.rate * names.s0 - surface.w,
+        )
+
+    def long_wave(self, k):
+        """sigma = -2 k^2 / (5 tan slope), thesis (4.25)."""
+        return -2 * k**2 / (5 * tan(radians(self.slope_deg)))
+
+
+def profile(s, mu, Fr2):
+    """Base state in zeta = sqrt(1 - z) = 1 - s: every coefficient of the equations is a polynomial.
+
+    Effective and tangent viscosity across the slope are both mu p / shear rate = mu sqrt(1 - z).
+    """
+    zeta = 1 - s
+    return Profile(dz=2 * zeta, rho=Fr2, eta=mu * zeta, beta=mu * zeta)

@@ -1,0 +1,60 @@
+"""Polynomials in named symbols: how equations and conditions are written down once, on paper's terms.
+
+The residual of an equation is a `Form`: a sum of coefficients (numbers, or arrays over the points
+of a layer) times products of symbols, one of which is an unknown. A flow writes
+`(rate + 1j * U) * s0 - w`; the pencil reads off which coefficient multiplies which unknown and
+which power of `k`. The same functions accept plain numbers, mpmath numbers or sympy symbols.
+"""
+
+
+class Form:
+    """Sum of coefficient * product of symbols; `terms` maps sorted symbol names to coefficients."""
+
+    __array_ufunc__ = None  # let `array * form` come to us
+    __slots__ = ("terms",)
+
+    def __init__(self, terms):
+        self.terms = terms
+
+    def __add__(self, other):
+        total = dict(self.terms)
+        for names, coefficient in _form(other).terms.items():
+            total[names] = total[names] + coefficient if names in total else coefficient
+        return Form(total)
+
+    def __mul__(self, other):
+        total = Form({})
+        for left, a in self.terms.items():
+            for right, b in _form(other).terms.items():
+                total += Form({tuple(sorted(left + right)): a * b})
+        return total
+
+    def __neg__(self):
+        return self * -1.0
+
+    def __sub__(self, other):
+        return self + -_form(other)
+
+    def __rsub__(self, other):
+        return -self + other
+
+    def __truediv__(self, number):
+        return self * (1 / number)
+
+    def __pow__(self, power):
+        product = Form({(): 1.0})
+        for _ in range(power):
+            product = product * self
+        return product
+
+    __radd__ = __add__
+    __rmul__ = __mul__
+
+
+def symbol(name):
+    """Return the form that is this symbol."""
+    return Form({(name,): 1.0})
+
+
+def _form(value):
+    return value if isinstance(value, Form) else Form({(): value})

@@ -1,0 +1,247 @@
+"""One mode: a two-sided inverse iteration with Rayleigh quotient, its error bar and its slope in k.
+
+One LU factorisation of A - rate B near the eigenvalue serves both eigenvectors x and y. The two-sided
+Rayleigh quotient is then wrong only by the product of their errors, and the pair (y, x) yields
+
+    d sigma / d anything = - y^H (d residual matrix) x / (y^H B x),
+
+hence the slope in k, the truncation error (y against the residual beyond the truncation) and the
+rounding error (y against a random rounding of every matrix entry).
+"""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from scipy.linalg import lapack
+
+from .errors import ModeLost, NotResolved
+from .pencil import Pencil
+from .system import System
+
+DEGREES = (8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 128, 160, 192, 256)
+TOLERANCE = 1e-10  # default bound on error / |sigma| for a resolved mode
+
+_EPS = np.finfo(float).eps
+_ROUNDING = 2.0  # standard deviations of the accumulated rounding that the error bar spans
+_MARGIN = 1e-5  # truncation is pushed this far below the tolerance, or below rounding
+_FACTORISATIONS = 12
+_LU = {"f": (lapack.dgetrf, lapack.dgetrs), "c": (lapack.zgetrf, lapack.zgetrs)}
+
+
+@dataclass(frozen=True)
+class Mode:
+    """An eigenvalue with error bar and eigenvectors.
+
+    `sigma` complex growth rate, `error` bound of its absolute error, `slope` d sigma/dk, `truncation` and
+    `rounding` the parts of the error, `degree` of the series, `status` "resolved" or what failed. `x`, `y`
+    (size,) hold the right and left eigenvector in the pencil of that degree, with y^H B x = 1; `bx` and
+    `by` are B x and B^H y.
+    """
+
+    flow: Any
+    k: float
+    sigma: complex
+    error: float
+    slope: complex
+    degree: int
+    status: str
+    truncation: float
+    rounding: float
+    rate: complex = field(repr=False)
+    rate_slope: complex = field(repr=False)
+    x: np.ndarray = field(repr=False)
+    y: np.ndarray = field(repr=False)
+    bx: np.ndarray = field(repr=False)
+    by: np.ndarray = field(repr=False)
+
+    @property
+    def growth_rate(self):
+        return self.sigma.real
+
+    @property
+    def c(self):
+        """Complex wave speed i sigma / k."""
+        return 1j * self.sigma / self.k
+
+    @property
+    def phase_speed(self):
+        return self.c.real
+
+
+class Solver:
+    """Refines modes of one flow; keeps the pencils it has assembled, one per degree."""
+
+    def __init__(self, flow, tolerance=TOLERANCE, max_degree=DEGREES[-1]):
+        self.flow = flow
+        self.tolerance = tolerance
+        self.degrees = tuple(d for d in DEGREES if d <= max_degree) or (max_degree,)
+        self._system = System(flow)
+        self._pencils = {}
+        self._symbols = {}
+
+    def pencil(self, degree):
+        if degree not in self._pencils:
+            self._pencils[degree] = Pencil(self._system, degree)
+        return self._pencils[degree]
+
+    def prepare(self, k):
+        """Evaluate the flow's functions of k for a whole array (count,) at once."""
+        functions = self.flow.evaluate(k)
+        for i, value in enumerate(k):
+            self._symbols[float(value)] = _symbols(value, {name: [part[i] for part in parts]
+                                                          for name, parts in functions.items()})
+
+    def symbols(self, k):
+        if float(k) not in self._symbols:
+            self.prepare(np.array([k], dtype=float))
+        return self._symbols[float(k)]
+
+    def width(self, k):
+        """sigma / rate at wavenumber k."""
+        return k ** (1 + self.flow.order)
+
+    def solve(self, k, rate, vectors=None, degree=None):
+        """Return the mode next to `rate`, at the first degree that resolves it.
+
+        `vectors` is (degree, x, y) of a nearby mode, if known. Raises ModeLost where the iteration
+        does not settle; a mode still unresolved at the largest degree is returned with that status.
+        """
+        start = self.degrees.index(degree or (vectors[0] if vectors else self.degrees[min(2, len(self.degrees) - 1)]))
+        for degree in self.degrees[start:]:
+            pencil = self.pencil(degree)
+            x, y = transfer(self, vectors, degree) if vectors else (None, None)
+            eigen = _refine(pencil, pencil.weights(self.symbols(k)), rate, x, y)
+            mode = self._mode(k, degree, eigen)
+            if mode.truncation <= max(mode.rounding, _MARGIN * self.tolerance * abs(mode.sigma)):
+                break
+            rate, vectors = eigen.rate, (degree, eigen.x, eigen.y)
+        return mode
+
+    def next_degree(self, mode):
+        """The degree to try first near this mode: one rung lower where it is over-resolved."""
+        rung = self.degrees.index(mode.degree)
+        return self.degrees[rung - 1] if rung and mode.truncation < 1e-7 * mode.rounding else mode.degree
+
+    def _mode(self, k, degree, eigen):
+        width = self.width(k)
+        sigma = width * eigen.rate
+        rounding = width * _ROUNDING * eigen.rounding + width * eigen.spread + _EPS * abs(sigma)
+        truncation = width * eigen.truncation
+        error = truncation + rounding
+        status = "resolved"
+        if error > self.tolerance * abs(sigma):
+            status = f"error {error:.1e} exceeds tolerance at degree {degree}"
+        slope = width * eigen.slope + (1 + self.flow.order) * sigma / k
+        return Mode(self.flow, float(k), complex(sigma), float(error), complex(slope), degree, status, float(truncation),
+                    float(rounding), eigen.rate, eigen.slope, eigen.x, eigen.y,
+                    eigen.bx, eigen.by)
+
+
+def require(mode):
+    """Return the mode if it is resolved, else raise NotResolved."""
+    if mode.status != "resolved":
+        raise NotResolved(f"{mode.flow}, k={mode.k:g}: {mode.status}; raise max_degree or loosen the tolerance")
+    return mode
+
+
+def transfer(solver, vectors, degree):
+    """Eigenvectors (degree, x, y) of one degree as vectors of another: series are padded or cut."""
+    old, x, y = vectors
+    if old == degree:
+        return x, y
+    source, target = solver.pencil(old), solver.pencil(degree)
+    return _fit(x, source.columns, target.columns, target.size), _fit(y, source.rows, target.rows, target.size)
+
+
+def _fit(vector, source, target, size):
+    fitted = np.zeros(size, vector.dtype)
+    for name, block in source.items():
+        count = min(block.stop - block.start, target[name].stop - target[name].start)
+        fitted[target[name].start: target[name].start + count] = vector[block.start: block.start + count]
+    return fitted
+
+
+@dataclass(frozen=True)
+class _Eigen:
+    rate: complex
+    slope: complex
+    truncation: float
+    rounding: float
+    spread: float
+    x: np.ndarray
+    y: np.ndarray
+    bx: np.ndarray
+    by: np.ndarray
+
+
+def _refine(pencil, weights, rate, x, y):
+    """Two-sided inverse iteration from `rate` (and vectors, if known) until the quotient has settled."""
+    a, b = pencil.pair(weights)
+    if pencil.real and np.imag(rate) == 0:
+        rate = float(np.real(rate))
+    x = _start(pencil.size) if x is None else x
+    y = _start(pencil.size) if y is None else y
+    if pencil.real and np.isrealobj(rate):
+        x, y = x.real, y.real
+    adjoint = b.conj().T
+    for _ in range(_FACTORISATIONS):
+        matrix = np.asfortranarray(a - rate * b)
+        getrf, getrs = _LU[matrix.dtype.kind]
+        lu, pivots, info = getrf(matrix, overwrite_a=True)
+        if info:
+            rate = rate * (1 + 4 * _EPS) + 1e-300
+            continue
+        x, x_error = _iterate(lambda v: getrs(lu, pivots, b @ v)[0], x)  # noqa: B023
+        y, y_error = _iterate(lambda v: getrs(lu, pivots, adjoint @ v, trans=2)[0], y)  # noqa: B023
+        eigen = _quotient(pencil, weights, x, y, adjoint)
+        if not np.isfinite(eigen.rate):
+            break
+        if x_error * y_error < 0.1 * _EPS and max(x_error, y_error) < 1e-6:
+            return eigen
+        rate = eigen.rate
+    raise ModeLost(f"inverse iteration near rate {complex(rate):.6g} did not settle")
+
+
+def _start(size):
+    return np.random.default_rng(1).standard_normal(size)
+
+
+def _iterate(solve, vector):
+    """Two inverse iterations with one factorisation; return the vector and an estimate of its error.
+
+    Vectors are scaled by one component. The second step shrinks what the first one changed by the
+    ratio of the distances to the wanted and the next eigenvalue, and so will the next.
+    """
+    pivot = np.argmax(np.abs(vector))
+    first = solve(vector)
+    first = first / first[pivot]
+    second = solve(first)
+    second = second / second[pivot]
+    change = np.linalg.norm(second - first)
+    ratio = change / (np.linalg.norm(first - vector / vector[pivot]) + 1e-300)
+    return second, min(1.0, ratio) * change / np.linalg.norm(second) + _EPS
+
+
+def _quotient(pencil, weights, x, y, adjoint):
+    """Rayleigh quotient of the pair, its slope in k and its errors."""
+    parts = pencil.stack @ x  # (parts, size)
+    c = parts @ y.conj()
+    value, first = weights.value * c, pencil.first_b
+    norm = -value[first:].sum()  # y^H B x
+    rate = value[:first].sum() / norm
+    power = np.ones(len(c), dtype=np.result_type(rate))
+    power[first:] = rate
+    y = y / np.conj(norm)
+    slope = (weights.slope * c * power).sum() / norm
+    spread = (weights.spread * np.abs(c * power)).sum() / abs(norm)
+    factors = np.abs(weights.value * power)
+    variance = (factors**2 @ (pencil.squares @ np.abs(x) ** 2)) @ np.abs(y) ** 2
+    beyond = np.abs((weights.value * power) @ (pencil.tail @ x)).reshape(len(pencil.last), -1).sum(axis=1)
+    truncation = beyond @ np.abs(y[pencil.last]).max(axis=1)
+    return _Eigen(rate, slope, truncation, _EPS * np.sqrt(variance), spread, x, y,
+                  -(weights.value[first:] @ parts[first:]), adjoint @ y)
+
+
+def _symbols(k, functions):
+    return {"k": (k, 1.0, 0.0), **functions}

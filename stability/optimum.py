@@ -1,0 +1,168 @@
+"""The fastest growing wavenumber: a global look along the surface mode, then Newton on d sigma_r / dk = 0.
+
+The look starts in the long-wave regime, where growth is a power of k, and follows the mode with its
+analytic slope in steps that its predictor can vouch for; a maximum lies wherever the slope turns from
+positive to negative. Every one found is refined, because the largest can change branch.
+"""
+
+from dataclasses import dataclass
+from math import exp, log
+from typing import Any
+
+import numpy as np
+
+from .errors import ModeLost, NotResolved
+from .mode import DEGREES, TOLERANCE, Solver
+from .tracking import follow, surface_mode
+
+SEARCH = (1e-3, 100.0)  # default range of k; the lower end moves down until growth is a power law
+_STEP = 0.2  # of the global look, in log k
+_DECAYED = 10.0  # the look ends once the mode has decayed over this factor in k
+_ITERATIONS = 20
+_SLOPE_ERROR = 4.0  # error of d sigma/dk in units of error of sigma / k (measured)
+
+
+@dataclass(frozen=True)
+class Maximum:
+    """A local maximum of the growth rate: `error` bounds the absolute error of k."""
+
+    k: float
+    error: float
+    mode: Any
+
+    @property
+    def growth_rate(self):
+        return self.mode.growth_rate
+
+
+@dataclass(frozen=True)
+class Optimum:
+    """All local maxima of the growth rate of the surface mode, by decreasing growth rate.
+
+    `status` is "resolved" or says why there is none; `k_max`, `growth_rate`, `phase_speed` and
+    `error` (of k_max) belong to the first and raise NotResolved if there is none.
+    """
+
+    flow: Any
+    maxima: tuple
+    status: str
+
+    @property
+    def best(self):
+        if not self.maxima:
+            raise NotResolved(f"{self.flow}: {self.status}")
+        return self.maxima[0]
+
+    @property
+    def k_max(self):
+        return self.best.k
+
+    @property
+    def error(self):
+        return self.best.error
+
+    @property
+    def growth_rate(self):
+        return self.best.growth_rate
+
+    @property
+    def phase_speed(self):
+        return self.best.mode.phase_speed
+
+
+def k_max(flow, search=SEARCH, *, tolerance=TOLERANCE, max_degree=DEGREES[-1], strict=True):
+    """Return the `Optimum` of a flow: where the growth rate of its surface mode is largest.
+
+    Only maxima with positive growth rate count: a flow that decays everywhere has none. Raises
+    NotResolved if there is none; with strict=False the record says so in `status`.
+    """
+    solver = Solver(flow, tolerance, max_degree)
+    try:
+        modes, status = _look(solver, *search)
+        maxima = [_refine(solver, left, right) for left, right in zip(modes, modes[1:], strict=False)
+                  if _growth_slope(left) > 0 >= _growth_slope(right)]
+    except ModeLost as reason:
+        maxima, status = [], str(reason)
+    maxima = sorted((m for m in maxima if m.growth_rate > 0), key=lambda m: -m.growth_rate)
+    optimum = Optimum(flow, tuple(maxima), _status(maxima, status, search))
+    if strict and optimum.status != "resolved":
+        raise NotResolved(f"{flow}: {optimum.status}")
+    return optimum
+
+
+def _status(maxima, status, search):
+    if status != "resolved":
+        return status
+    if not maxima:
+        return f"no unstable maximum for k up to {search[1]:g}"
+    return maxima[0].mode.status
+
+
+def _look(solver, low, high):
+    """Modes along k from the long-wave regime to where the mode has decayed for good, and a status."""
+    start = _power_law_start(solver, low)
+    count = max(2, int(np.ceil(log(high / start.k) / _STEP)) + 1)
+    wavenumbers = np.geomspace(start.k, high, count)
+    solver.prepare(wavenumbers)
+    modes = [start]
+    chunk = max(1, int(log(_DECAYED) / _STEP))
+    for first in range(1, count, chunk):
+        path = follow(solver, modes[-1], wavenumbers[first: first + chunk])
+        modes += path.visited[1:]
+        if path.lost:
+            return modes, path.lost
+        if all(m.growth_rate < 0 and _growth_slope(m) < 0 for m in modes[-chunk:]):
+            break
+    if _growth_slope(modes[-1]) > 0 and modes[-1].growth_rate > 0:
+        return modes, f"growth still rises at k = {modes[-1].k:g}, the end of the search"
+    return modes, "resolved"
+
+
+def _power_law_start(solver, k):
+    """The surface mode at a k so small that growth is a power of k: no maximum lies below."""
+    for _ in range(8):
+        mode = surface_mode(solver, k)
+        if 0.9 < mode.k * _growth_slope(mode) / mode.growth_rate < 2.5:
+            return mode
+        k = mode.k / 10
+    raise ModeLost(f"{solver.flow}: growth follows no power of k down to k = {k:.1e}")
+
+
+def _growth_slope(mode):
+    return mode.slope.real
+
+
+def _refine(solver, low, high):
+    """Newton on the analytic slope between two modes that bracket a maximum, safeguarded by the bracket."""
+    curvature = (_growth_slope(high) - _growth_slope(low)) / (high.k - low.k)
+    for _ in range(_ITERATIONS):
+        k = _slope_zero(low, high)
+        near = low if abs(k - low.k) < abs(k - high.k) else high
+        path = follow(solver, near, [k])
+        if path.lost:
+            raise ModeLost(path.lost)
+        mode = path.modes[0]
+        slope = _growth_slope(mode)
+        if abs(mode.k - near.k) > 1e-6 * mode.k:
+            curvature = (slope - _growth_slope(near)) / (mode.k - near.k)
+        low, high = (mode, high) if slope > 0 else (low, mode)
+        if abs(slope) < 1e-13 * abs(curvature) * mode.k or high.k - low.k < 1e-14 * mode.k:
+            break
+    return Maximum(mode.k, float((abs(slope) + _SLOPE_ERROR * mode.error / mode.k) / abs(curvature)), mode)
+
+
+def _slope_zero(low, high):
+    """Zero of the growth slope between two modes, from the cubic through values and slopes in log k.
+
+    Where one end is much nearer the zero, a Newton step from it with the secant curvature.
+    """
+    a, b = low.k * _growth_slope(low), high.k * _growth_slope(high)
+    h = log(high.k / low.k)
+    if min(abs(a), abs(b)) < 1e-3 * max(abs(a), abs(b)):
+        t = a / (a - b)
+    else:
+        secant = (high.growth_rate - low.growth_rate) / h
+        roots = np.roots((3 * (a + b - 2 * secant), 2 * (3 * secant - 2 * a - b), a))
+        inside = [root.real for root in roots if abs(root.imag) < 1e-12 and 0 < root.real < 1]
+        t = inside[0] if len(inside) == 1 else a / (a - b)
+    return low.k * exp(t * h)

@@ -1,0 +1,106 @@
+"""Results as a table, CSV or JSON, on standard output or in a file that is written whole or not at all."""
+
+import csv
+import io
+import json
+import os
+import sys
+import tempfile
+from contextlib import contextmanager
+from math import isinf
+from pathlib import Path
+
+from .errors import ParameterError
+
+
+def render(form, header, rows):
+    """Return rows (dicts with the same keys) as text in the form "table", "csv" or "json".
+
+    `header` holds flow, parameters, method, version and whatever else belongs to the whole result.
+    """
+    if form == "json":
+        return json.dumps(_plain({**header, "rows": rows}), indent=1, allow_nan=False) + "\n"
+    if form == "csv":
+        return _csv(header, rows)
+    return _table(rows)
+
+
+def _plain(value):
+    """JSON has no infinity: write it as the string that the command line takes."""
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    return str(value) if isinstance(value, float) and isinf(value) else value
+
+
+def _csv(header, rows):
+    text = io.StringIO()
+    for key in ("flow", "method", "version"):
+        text.write(f"# {key}: {header[key]}\n")
+    for key, value in header["parameters"].items():
+        text.write(f"# {key}: {value}\n")
+    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
+    writer.writeheader()
+    for row in rows:
+        writer.writerow({key: json.dumps(_plain(value)) if isinstance(value, list) else value for key, value in row.items()})
+    return text.getvalue()
+
+
+def _table(rows):
+    cells = [[_cell(key, value) for key, value in row.items()] for row in rows]
+    columns = list(zip(list(rows[0]), *cells, strict=True))
+    widths = [max(len(cell) for cell in column) for column in columns]
+    texts = [isinstance(value, str) for value in rows[0].values()]
+    lines = zip(*([cell.ljust(width) if text else cell.rjust(width) for cell in column]
+                  for column, width, text in zip(columns, widths, texts, strict=True)), strict=True)
+    return "".join("  ".join(line).rstrip() + "\n" for line in lines)
+
+
+def _cell(key, value):
+    if value is None:
+        return "-"
+    if isinstance(value, list):
+        return " ".join(f"({k:.6g}, {growth:.4g})" for k, growth in value) or "-"
+    if isinstance(value, float):
+        return f"{value:.1e}" if key == "error" else f"{value:.10g}"
+    return str(value)
+
+
+@contextmanager
+def whole_file(path, name):
+    """Yield a temporary path beside `path` that replaces it when the block ends well.
+
+    Raises ParameterError, naming the option `name`, where the file cannot be written.
+    """
+    path = Path(path)
+    try:
+        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name[:100]}.", suffix=path.suffix)
+    except OSError as reason:
+        raise ParameterError(f"{name}: cannot write {str(path)!r}: {reason.strerror}") from None
+    os.close(handle)
+    try:
+        yield Path(temporary)
+        if path.is_dir():
+            raise ParameterError(f"{name}: cannot write {str(path)!r}: it is a directory")
+        os.chmod(temporary, 0o666 & ~_umask())
+        os.replace(temporary, path)
+    except OSError as reason:
+        raise ParameterError(f"{name}: cannot write {str(path)!r}: {reason.strerror}") from None
+    finally:
+        Path(temporary).unlink(missing_ok=True)
+
+
+def _umask():
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def write(text, temporary):
+    """Write text to the temporary file of -o, or to standard output."""
+    if temporary is None:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    else:
+        temporary.write_text(text, encoding="utf-8")

@@ -1,0 +1,82 @@
+"""Figures of results, drawn without a display and ready for print."""
+
+import numpy as np
+
+from .dispersion import DispersionRelation
+
+STYLE = {
+    "figure.constrained_layout.use": True,
+    "font.size": 9,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "legend.frameon": False,
+    "lines.linewidth": 1.4,
+    "savefig.dpi": 200,
+    "svg.hashsalt": "stability",
+}
+BLUE, RED, GREY = "#0b4f8a", "#c0392b", "#7f7f7f"
+
+
+def draw(result, path):
+    """Draw a DispersionRelation, a list of Spectrum, or (name, list of Optimum) into the file `path`."""
+    import matplotlib
+    from matplotlib.figure import Figure
+
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(6.4, 2.8))
+        axes = figure.subplots(1, 2)
+        if isinstance(result, DispersionRelation):
+            _dispersion(result, *axes)
+        elif isinstance(result, list):
+            _spectra(result, figure, axes)
+        else:
+            _optima(*result, *axes)
+        figure.suptitle(_caption(result), fontsize=8, color=GREY)
+        figure.savefig(path)
+
+
+def _caption(result):
+    if isinstance(result, DispersionRelation):
+        return f"{result.flow}, {result.mode} mode"
+    return str(result[0].flow) if isinstance(result, list) else str(result[1][0].flow)
+
+
+def _dispersion(relation, left, right):
+    order = np.argsort(relation.k)
+    k = relation.k[order]
+    marker = "o" if len(k) == 1 else ""
+    for axis, values, label in ((left, relation.growth_rate, r"growth rate $\sigma_r$"),
+                                (right, relation.phase_speed, r"phase speed $c_r$")):
+        axis.axhline(0, color=GREY, linewidth=0.6)
+        axis.plot(k, values[order], color=BLUE, marker=marker)
+        axis.set(xlabel="wavenumber $k$", ylabel=label, xscale="log" if _spans_decades(k) else "linear")
+
+
+def _spectra(spectra, figure, axes):
+    axes[1].remove()
+    axes[0].set_subplotspec(figure.add_gridspec(1, 1)[0])
+    for one in spectra:
+        speeds = [mode.phase_speed for mode in one.modes]
+        axes[0].plot(speeds, one.sigma.real, "o", markersize=4, label=f"$k$ = {one.k:g}")
+    axes[0].axhline(0, color=GREY, linewidth=0.6)
+    axes[0].set(xlabel=r"phase speed $c_r$", ylabel=r"growth rate $\sigma_r$")
+    axes[0].legend()
+
+
+def _optima(name, optima, left, right):
+    x = [getattr(optimum.flow, name) if name else 0.0 for optimum in optima]
+    for axis, label, get in ((left, "$k_{max}$", lambda m: m.k), (right, r"growth rate at $k_{max}$", lambda m: m.growth_rate)):
+        others = [(value, get(m)) for value, optimum in zip(x, optima, strict=True) for m in optimum.maxima[1:]]
+        if others:
+            axis.plot(*zip(*others, strict=True), ".", color=RED, markersize=4, label="other local maxima")
+            axis.legend()
+        best = [(value, get(o.maxima[0])) for value, o in zip(x, optima, strict=True) if o.maxima]
+        if best:
+            axis.plot(*zip(*best, strict=True), ".-", color=BLUE, markersize=4)
+        scale = "log" if len(x) > 1 and min(x) > 0 and _spans_decades(x) else "linear"
+        axis.set(xlabel=f"${name}$" if name and len(name) < 3 else name or "", ylabel=label, xscale=scale,
+                 yscale="log" if best and scale == "log" else "linear")
+
+
+def _spans_decades(values):
+    return max(values) > 20 * min(values)

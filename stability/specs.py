@@ -1,0 +1,45 @@
+"""Values given on the command line: a number, a list `a,b,c`, or a range `a:b:n` (log-spaced) or `a:b:n:lin`."""
+
+from math import isfinite
+
+import numpy as np
+
+from .errors import ParameterError
+
+_MOST = 100_000
+
+
+def parse_spec(text, name, positive=True):
+    """Return the values of a SPEC as a float array (count,); raise a ParameterError that names `name`."""
+    values = _range(text, name) if ":" in text else np.array([_number(part, name) for part in text.split(",")])
+    if positive and not np.all(values > 0):
+        raise ParameterError(f"{name}: values must be positive (got {min(values):g})")
+    return values
+
+
+def _range(text, name):
+    parts = text.split(":")
+    linear = parts[3:] == ["lin"]
+    if len(parts) != 3 and not linear:
+        raise ParameterError(f"{name}: a range is a:b:n or a:b:n:lin (got {text!r})")
+    start, stop = _number(parts[0], name), _number(parts[1], name)
+    count = int(parts[2]) if parts[2].isdecimal() else 0
+    if not 2 <= count <= _MOST:
+        raise ParameterError(f"{name}: the number of points must be an integer from 2 to {_MOST} (got {parts[2]!r})")
+    if not start < stop:
+        raise ParameterError(f"{name}: a range must rise, a < b (got {text!r})")
+    if linear:
+        return np.linspace(start, stop, count)
+    if start <= 0:
+        raise ParameterError(f"{name}: a log-spaced range needs a > 0 (got {text!r}); add :lin for equal steps")
+    return np.geomspace(start, stop, count)
+
+
+def _number(text, name):
+    try:
+        value = float(text)
+    except ValueError:
+        value = None
+    if value is None or not isfinite(value):
+        raise ParameterError(f"{name}: not a finite number: {text!r}; give a number, a list a,b,c or a range a:b:n[:lin]")
+    return value

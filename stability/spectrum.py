@@ -1,0 +1,115 @@
+"""All modes at one wavenumber: the dense problem with its infinite eigenvalues deflated, then polished.
+
+Only the momentum and kinematic rows of B are non-zero. With B = E B_r (E picks those rows) and
+G = B_r (A - shift B)^{-1} E, the finite eigenvalues are rate = shift + 1/theta for the non-zero
+eigenvalues theta of G. The infinite ones, defective in the pencil because pressure only enforces
+continuity, become semisimple zeros of G: a wide gap separates them, and nothing is filtered by size.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .errors import ModeLost
+from .mode import DEGREES, TOLERANCE, Solver, require
+
+_SHIFT = 0.01 - 0.013j  # tried when the pencil is singular at rate 0
+_FLOOR = 1e-12  # zeros of G lie below this fraction of the largest theta (measured: below 1e-13)
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """The least stable modes of a flow at wavenumber k, sorted by decreasing growth rate."""
+
+    flow: Any
+    k: float
+    modes: tuple
+
+    @property
+    def sigma(self):
+        """Complex growth rates (modes,)."""
+        return np.array([mode.sigma for mode in self.modes])
+
+    @property
+    def error(self):
+        """Error bars of sigma (modes,)."""
+        return np.array([mode.error for mode in self.modes])
+
+
+def finite_rates(pencil, weights):
+    """Return the finite eigenvalues of A - rate B, all of them, by decreasing real part."""
+    a, b = pencil.pair(weights)
+    rows = np.flatnonzero(np.any(b, axis=1))
+    shift = 0.0
+    if np.linalg.cond(a, 1) > 1e15:
+        shift = _SHIFT
+    columns = np.zeros((len(a), len(rows)))
+    columns[rows, np.arange(len(rows))] = 1
+    theta = np.linalg.eigvals(b[rows] @ np.linalg.solve(a - shift * b, columns))
+    theta = theta[np.argsort(-np.abs(theta))]
+    theta = theta[: _finite_count(np.abs(theta))]
+    rates = shift + 1 / theta
+    return rates[np.argsort(-rates.real)]
+
+
+def _finite_count(sizes):
+    """Index of the widest gap in decreasing |theta|, looked for where zeros can be."""
+    ratios = sizes[1:] / np.maximum(sizes[:-1], np.finfo(float).tiny)
+    ratios[sizes[1:] > _FLOOR * sizes[0]] = 1
+    return int(np.argmin(ratios)) + 1 if len(ratios) and ratios.min() < 1e-3 else len(sizes)
+
+
+def spectrum(flow, k, modes=10, *, tolerance=TOLERANCE, max_degree=DEGREES[-1], strict=True):
+    """Return the `modes` least stable modes at wavenumber k, each refined to its own degree with an error bar.
+
+    The degree of the dense problem is raised until those modes no longer move. Raises NotResolved if
+    one of them is not resolved within `max_degree`; with strict=False its status says so instead.
+    """
+    solver = Solver(flow, tolerance, max_degree)
+    found = leading_modes(solver, float(k), modes)
+    if strict:
+        for mode in found:
+            require(mode)
+    return Spectrum(flow, float(k), tuple(found))
+
+
+def leading_modes(solver, k, count):
+    """Return the `count` least stable modes, polished; unresolved ones carry that status."""
+    rates, degree = _converged_rates(solver, k, count)
+    found = []
+    for rate in rates:
+        mode = _polish(solver, k, rate, degree)
+        if mode is not None and not any(_same(mode, other) for other in found):
+            found.append(mode)
+        if len(found) == count:
+            break
+    return sorted(found, key=lambda mode: -mode.growth_rate)
+
+
+def _converged_rates(solver, k, count):
+    """Finite rates at the first degree at which the leading `count` agree with the degree before."""
+    previous = None
+    for degree in solver.degrees[3:] or solver.degrees:
+        pencil = solver.pencil(degree)
+        rates = finite_rates(pencil, pencil.weights(solver.symbols(k)))
+        if previous is not None:
+            lead = rates[:count]
+            drift = np.abs(lead[:, None] - previous).min(axis=1)
+            if len(lead) == count and np.all(drift < 1e-4 * np.abs(lead)):
+                break
+        previous = rates
+    return rates, degree
+
+
+def _polish(solver, k, rate, degree):
+    """Refine one dense eigenvalue; None if the iteration leaves it."""
+    try:
+        mode = solver.solve(k, rate, None, degree)
+    except ModeLost:
+        return None
+    return mode if abs(mode.rate - rate) < 0.05 * abs(rate) else None
+
+
+def _same(mode, other):
+    return abs(mode.sigma - other.sigma) <= 1e-9 * abs(mode.sigma) + mode.error + other.error

@@ -1,0 +1,192 @@
+"""Following one mode along k: predictor, corrector, and the refusal to jump to another mode.
+
+The predictor extrapolates the rate (cubic, from values and slopes at two points) and the vectors
+(linear) in log k. A step is accepted when the new and old eigenvectors are biorthogonal partners,
+y_old^H B x_new * y_new^H B x_old near 1: between different modes the product vanishes.
+"""
+
+from dataclasses import dataclass
+from math import copysign, exp, log
+
+import numpy as np
+
+from .errors import ModeLost
+from .mode import transfer
+
+_FIRST_STEP = 0.3  # in log k
+_LARGEST_STEP = 1.5
+_SMALLEST_STEP = 1e-6
+_PREDICTION = 0.05  # relative error of the predictor at which the step length is kept
+_OVERLAP = 0.4  # largest deviation of the overlap from 1
+_STEPS = 2000
+
+
+@dataclass(frozen=True)
+class Collision:
+    """Two real modes meeting at k (growth rates equal there), or a pair splitting into two."""
+
+    k: float
+    sigma: float
+    becomes: str  # "pair" or "real"
+
+    def __str__(self):
+        outcome = "a complex pair (the one travelling downstream is followed)" if self.becomes == "pair" else \
+            "two real modes (the less damped one is followed)"
+        return f"two modes collide at k = {self.k:.6g}, sigma = {self.sigma:.6g}, and become {outcome}"
+
+
+@dataclass(frozen=True)
+class Path:
+    """Modes at the wavenumbers asked for, in that order, and the collisions met on the way.
+
+    `lost` is "" or says why the mode could not be followed; the modes then end before it.
+    """
+
+    modes: tuple
+    collisions: tuple
+    lost: str = ""
+    visited: tuple = ()
+
+
+def surface_mode(solver, k):
+    """Return the slow surface mode at a small wavenumber <= k, from its long-wave limit."""
+    for _ in range(12):
+        guess = solver.flow.long_wave(k)
+        try:
+            mode = solver.solve(k, guess / solver.width(k))
+        except ModeLost:
+            mode = None
+        if mode is not None and abs(mode.sigma - guess) < 0.1 * abs(guess):
+            return mode
+        k = k / 5
+    raise ModeLost(f"{solver.flow}: no mode near the long-wave limit down to k = {k:.1e}")
+
+
+def follow(solver, start, wavenumbers):
+    """Follow the mode `start` through `wavenumbers`, a monotone sequence leading away from start.k."""
+    walk = _Walk(solver, start)
+    modes = []
+    try:
+        for k in wavenumbers:
+            modes.append(walk.to(float(k)))
+    except ModeLost as reason:
+        return Path(tuple(modes), tuple(walk.collisions), str(reason), tuple(walk.visited))
+    return Path(tuple(modes), tuple(walk.collisions), "", tuple(walk.visited))
+
+
+class _Walk:
+    """The state of a walk along k: the last two modes, the step in log k, the collisions so far."""
+
+    def __init__(self, solver, start):
+        self.solver = solver
+        self.before, self.now = None, start
+        self.step = _FIRST_STEP
+        self.collisions = []
+        self.visited = [start]
+
+    def to(self, k):
+        for _ in range(_STEPS):
+            gap = log(k / self.now.k)
+            if gap == 0:
+                return self.now
+            target = k if abs(gap) <= self.step else self.now.k * exp(copysign(self.step, gap))
+            self._advance(target)
+        raise self._lost(f"{_STEPS} steps did not reach k = {k:g}")
+
+    def _advance(self, k):
+        """Take one step to k, or shorten the step, or cross a collision."""
+        length = abs(log(k / self.now.k))
+        rate, vectors = self._predict(k)
+        try:
+            mode = self.solver.solve(k, rate, vectors, self.solver.next_degree(self.now))
+            deviation = abs(self._overlap(mode) - 1) if self._same_kind(mode) else np.inf
+        except ModeLost:
+            deviation = np.inf
+        if deviation < _OVERLAP:
+            self._accept(mode)
+            miss = abs(mode.rate - rate) / (abs(mode.rate) + abs(mode.k * mode.rate_slope)) + 1e-12
+            factor = min(2.0, max(0.5, (_PREDICTION / miss) ** 0.25))
+            self.step = min(_LARGEST_STEP, max(length, self.step if length < self.step else 0) * factor)
+            return
+        self.step = length / 3
+        if self.step < 0.02 and self._cross(k):
+            return
+        if self.step < _SMALLEST_STEP:
+            raise self._lost(f"no mode overlaps its neighbour at k = {k:.6g}")
+
+    def _same_kind(self, mode):
+        """Real stays real and complex stays complex, unless a collision has been found."""
+        real = abs(mode.rate.imag) < 1e-10 * abs(mode.rate)
+        return not self.solver.pencil(mode.degree).real or real == (self.now.rate.imag == 0)
+
+    def _accept(self, mode):
+        self.before, self.now = self.now, mode
+        self.visited.append(mode)
+
+    def _lost(self, why):
+        return ModeLost(f"{self.solver.flow}: the mode is lost at k = {self.now.k:.6g}, "
+                        f"sigma = {self.now.sigma:.6g}: {why}")
+
+    def _predict(self, k):
+        """Extrapolate rate and vectors to k from the last two modes."""
+        now, before = self.now, self.before
+        t = log(k / now.k)
+        slope = now.k * now.rate_slope
+        vectors = (now.degree, now.x, now.y)
+        if before is None:
+            return now.rate + slope * t, vectors
+        h = log(now.k / before.k)
+        secant = (now.rate - before.rate) / h
+        bend = (slope - secant) / h
+        twist = (slope + before.k * before.rate_slope - 2 * secant) / h**2
+        rate = now.rate + t * (slope + t * (bend + twist * (t + h)))
+        x, y = transfer(self.solver, (before.degree, before.x, before.y), now.degree)
+        return rate, (now.degree, _extrapolate(now.x, x, t / h), _extrapolate(now.y, y, t / h))
+
+    def _overlap(self, mode):
+        """Product of the two biorthogonal overlaps of `mode` with the last one; 1 for the same vectors."""
+        x, y = transfer(self.solver, (self.now.degree, self.now.x, self.now.y), mode.degree)
+        return np.vdot(y, mode.bx) * np.vdot(mode.by, x)
+
+    def _cross(self, k):
+        """Step across a collision of two real modes (or of a conjugate pair) just ahead; True if there is one.
+
+        Near it rate = m(k) +- sqrt(q(k)) with m and q smooth and q = 0 at the collision.
+        """
+        now, before = self.now, self.before
+        if before is None or not self.solver.pencil(now.degree).real:
+            return False
+        slope = now.rate_slope
+        if now.rate.imag == 0:
+            ahead = _zero(before.k, before.rate_slope.real**-2, now.k, slope.real**-2)
+            middle = now.rate.real + 2 * (ahead - now.k) * slope.real
+            half = -1j * abs(now.rate.real - middle)
+        else:
+            ahead = now.k - now.rate.imag / (2 * slope.imag)
+            middle = now.rate.real + (ahead - now.k) * slope.real
+            half = abs(now.rate.imag)
+        reach = (k - now.k) / (ahead - now.k)
+        if not 1 < reach < 100:
+            return False
+        beyond = k if reach < 2 else 2 * ahead - now.k
+        guess = middle + half * (beyond / ahead - 1) ** 0.5 / (1 - now.k / ahead) ** 0.5
+        mode = self.solver.solve(beyond, guess, (now.degree, now.x, now.y))
+        if abs(mode.rate - guess) > 0.5 * abs(guess - middle):
+            return False
+        sigma = self.solver.width(ahead) * middle
+        self.collisions.append(Collision(ahead, sigma, "real" if now.rate.imag else "pair"))
+        self._accept(mode)
+        self.before = None
+        self.step = abs(log(beyond / now.k))
+        return True
+
+
+def _extrapolate(now, before, ratio):
+    """Linear extrapolation of vectors, the older one first given the scale of the newer."""
+    scale = np.vdot(before, now) / np.vdot(before, before)
+    return now + ratio * (now - scale * before)
+
+
+def _zero(x0, f0, x1, f1):
+    """Where the straight line through two points vanishes."""
+    return x1 - f1 * (x1 - x0) / (f1 - f0) if f1 != f0 else np.inf
