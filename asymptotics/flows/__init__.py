@@ -29,6 +29,8 @@ class Regime:
     expand      the expansion up to a given power of the gauge
     default     the highest power that is computed unless asked otherwise
     available   the highest power that has a closed form, or None
+    lowest      the power of the leading term
+    step        distance between successive powers
     accepts     says why a set of parameter values does not belong to the regime, or returns ""
     """
 
@@ -38,6 +40,7 @@ class Regime:
     default: sp.Rational
     available: sp.Rational | None = None
     lowest: sp.Rational = sp.Integer(1)
+    step: sp.Rational = sp.Integer(1)
     accepts: Callable[[Mapping], str] = lambda values: ""
 
 

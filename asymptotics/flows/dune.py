@@ -180,6 +180,7 @@ _BED = ("shields", "mu1", "b")
 REGIMES = {
     "boundary-layer": Regime("unbounded fluid, k -> 0 with k^2 << Re (4.81)", (*_BED, "Re"), boundary_layer,
                              default=sp.Integer(2), available=sp.Rational(8, 3), lowest=sp.Rational(4, 3),
+                             step=sp.Rational(1, 3),
                              accepts=_unbounded),
     "shallow": Regime("fluid under a lid, k depth -> 0 (4.84)", (*_BED, "Re", "depth"), shallow,
                       default=sp.Integer(2), available=sp.Integer(2), accepts=_needs_depth),

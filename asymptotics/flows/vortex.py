@@ -98,8 +98,8 @@ def _even_expansion(regime, hierarchy, order, parameters, names) -> Expansion:
 
 REGIMES = {
     "long-wave": Regime("k -> 0, free surface (4.25)", ("slope_deg", "Fr2"), long_wave_law,
-                        default=sp.Integer(6), lowest=sp.Integer(2),
+                        default=sp.Integer(6), lowest=sp.Integer(2), step=sp.Integer(2),
                         accepts=lambda values: "delta belongs to --regime delta" if "delta" in values else ""),
     "delta": Regime("k -> 0, pressure delta on the surface (4.30)", ("slope_deg", "Fr2", "delta"), loaded_law,
-                    default=sp.Integer(2), lowest=sp.Integer(2)),
+                    default=sp.Integer(2), lowest=sp.Integer(2), step=sp.Integer(2)),
 }

@@ -1,0 +1,289 @@
+"""The command `asymptotics`: expansions on standard output, one clear line on standard error when it fails.
+
+Exit status: 0 done; 2 bad usage or input; 3 `check` found another order than expected; 130 interrupted.
+"""
+
+import argparse
+import json
+import os
+import sys
+from difflib import get_close_matches
+
+VERBS = ("flows", "expand", "check")
+
+
+class BadUsage(ValueError):
+    """What the command line asks for cannot be done."""
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message):
+        raise BadUsage(f"{message} (see: {self.prog} --help)")
+
+
+def main(argv=None) -> int:
+    """Run the command line; return the exit status."""
+    argv = sys.argv[1:] if argv is None else argv
+    try:
+        status = _run(argv)
+        sys.stdout.flush()
+        return status
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 141
+    except KeyboardInterrupt:
+        return _fail("interrupted", 130)
+
+
+def _run(argv) -> int:
+    try:
+        arguments = _parser(argv).parse_args(argv)
+        return arguments.run(arguments)
+    except BadUsage as reason:
+        return _fail(reason, 2)
+    except (ValueError, LookupError) as reason:
+        from .flows import NoSuchFlow
+        from .limits import TooFewPoints
+        from .parameters import BadParameter
+
+        if isinstance(reason, (BadParameter, NoSuchFlow, TooFewPoints)):
+            return _fail(reason.args[0], 2)
+        raise
+
+
+def _fail(reason, status: int) -> int:
+    print(f"asymptotics: {reason}", file=sys.stderr)
+    return status
+
+
+def _parser(argv) -> _Parser:
+    parser = _Parser(prog="asymptotics", description="Long-wave and other limits of granular shear flows, exactly.",
+                     epilog="example: asymptotics expand dune --regime shallow --shields 1.5 --depth 10",
+                     allow_abbrev=False)
+    parser.add_argument("--version", action="version", version="asymptotics 0.1.0")
+    verbs = parser.add_subparsers(metavar="VERB", required=True, parser_class=_Parser)
+    verb = verbs.add_parser("flows", help="flows, their parameters and regimes", allow_abbrev=False,
+                            epilog="example: asymptotics flows dune")
+    verb.add_argument("flow", nargs="?", metavar="FLOW")
+    verb.set_defaults(run=_flows)
+    expand = verbs.add_parser("expand", help="expansion of the growth rate", allow_abbrev=False,
+                              epilog="example: asymptotics expand vortex --order 4 --slope-deg 30")
+    expand.add_argument("flow", metavar="FLOW")
+    expand.set_defaults(run=_expand)
+    form = expand.add_mutually_exclusive_group()
+    form.add_argument("--latex", dest="form", action="store_const", const="latex", help="LaTeX formulas")
+    form.add_argument("--json", dest="form", action="store_const", const="json", help="JSON")
+    check = verbs.add_parser("check", help="compare with numbers written by `stability dispersion ... --csv`",
+                             allow_abbrev=False,
+                             epilog="example: stability dispersion dune --k 1e-6:1e-4:9 --csv | asymptotics check dune")
+    check.add_argument("flow", metavar="FLOW")
+    check.add_argument("file", nargs="?", default="-", metavar="CSV", help="file, or - for standard input")
+    check.add_argument("--tolerance", default="0.05", metavar="T", help="allowed difference of the orders")
+    check.add_argument("--k-max", metavar="K", help="leave out larger wavenumbers (default: the lowest two decades)")
+    check.set_defaults(run=_check)
+    for verb in (expand, check):
+        verb.add_argument("--order", metavar="M", help="highest power of the gauge, e.g. 2 or 4/3")
+        verb.add_argument("--regime", metavar="NAME", help="which limit (see: asymptotics flows)")
+    if argv and argv[0] in VERBS[1:]:
+        _add_parameters(expand, check)
+    return parser
+
+
+def _add_parameters(*verbs) -> None:
+    """Flags of every flow: a flow is a module that costs sympy, so only when a verb needs them."""
+    from . import flows
+
+    for name in flows.names():
+        for parameter in flows.load(name).PARAMETERS:
+            for verb in verbs:
+                if parameter.flag not in verb._option_string_actions:
+                    verb.add_argument(parameter.flag, dest=f"parameter {parameter.name}", metavar="V",
+                                      help=f"{parameter.meaning}, {parameter.range} ({name})")
+
+
+# -- verbs -----------------------------------------------------------------------------------------------
+
+
+def _flows(arguments) -> int:
+    from . import flows
+
+    chosen = [arguments.flow] if arguments.flow else flows.names()
+    print("\n".join(_describe(name, _load(name)) for name in chosen))
+    return 0
+
+
+def _describe(name: str, flow) -> str:
+    lines = [f"{name}: {flow.SUMMARY}"]
+    lines += [f"  {parameter.flag:12} {parameter.range:22} {parameter.meaning}" for parameter in flow.PARAMETERS]
+    lines += [f"  --regime {regime:15} {limit.summary}; parameters {', '.join(limit.parameters)}; "
+              f"order {limit.lowest} to {limit.available or 'any'}, default {limit.default}"
+              for regime, limit in flow.REGIMES.items()]
+    return "\n".join(lines)
+
+
+def _expand(arguments) -> int:
+    from . import flows
+
+    _load(arguments.flow)
+    expansion = flows.expand(arguments.flow, arguments.regime, arguments.order, **_given(arguments))
+    writer = {"json": _json, "latex": _latex, None: _table}[arguments.form]
+    print(writer(expansion))
+    return 0
+
+
+def _check(arguments) -> int:
+    import numpy as np
+
+    from . import flows
+    from .limits import compare
+
+    _load(arguments.flow)
+    header, rows = _read_csv(arguments.file)
+    if header.get("flow", arguments.flow) != arguments.flow:
+        raise BadUsage(f"{_source(arguments.file)} holds the flow {header['flow']}, asked for {arguments.flow}; "
+                       f"run: asymptotics check {header['flow']}")
+    names = {parameter.name for parameter in flows.load(arguments.flow).PARAMETERS}
+    values = {name: value for name, value in header.items() if name in names} | _given(arguments)
+    expansion = flows.expand(arguments.flow, arguments.regime, arguments.order, **values)
+    missing = [name for name, value in expansion.parameters.items() if value is None]
+    if expansion.gauge.name != "k" or missing:
+        problem = f"needs {', '.join('--' + name for name in missing)}" if missing else "is not a series in k"
+        raise BadUsage(f"regime {expansion.regime} {problem}: check takes a regime in powers of k with all parameters given")
+    rows = rows[:, rows[0] <= _largest(arguments, rows[0])]
+    k, growth, speed, error = rows
+    gap = float(flows.load(arguments.flow).REGIMES[expansion.regime].step)
+    comparison = compare(growth - 1j * k * speed, expansion.function()(k), k, float(expansion.next_power),
+                         correction=gap if len(np.unique(k)) > 5 else None, error=error,
+                         tolerance=_positive(arguments.tolerance, "--tolerance"))
+    print(comparison.table())
+    print(f"# {comparison.verdict}")
+    return 0 if comparison.agrees else _fail(comparison.verdict, 3)
+
+
+# -- input -----------------------------------------------------------------------------------------------
+
+
+def _load(name: str):
+    from . import flows
+
+    if name not in flows.names():
+        near = get_close_matches(name, flows.names(), 1)
+        hint = f" (did you mean {near[0]!r}?)" if near else ""
+        raise BadUsage(f"unknown flow {name!r}{hint}; flows: {', '.join(flows.names())}")
+    return flows.load(name)
+
+
+def _given(arguments) -> dict[str, str]:
+    return {key.partition(" ")[2]: value for key, value in vars(arguments).items()
+            if key.startswith("parameter ") and value is not None}
+
+
+def _largest(arguments, k) -> float:
+    if arguments.k_max is not None:
+        return _positive(arguments.k_max, "--k-max")
+    return 100 * (1 + 1e-9) * k.min()
+
+
+def _positive(text: str, flag: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not value > 0:
+        raise BadUsage(f"{flag} must be a positive number, got {text!r}; write it like {flag} 0.05")
+    return value
+
+
+def _source(name: str) -> str:
+    return "standard input" if name == "-" else name
+
+
+def _read_csv(name: str):
+    """Header {key: text} from `# key: value` lines, and rows k, growth_rate, phase_speed, error, sorted by k."""
+    import csv
+
+    import numpy as np
+
+    try:
+        with (open(name, encoding="utf-8", newline="") if name != "-" else _keep_open(sys.stdin)) as stream:
+            lines = stream.read().splitlines()
+    except (OSError, UnicodeDecodeError) as reason:
+        raise BadUsage(f"cannot read {_source(name)}: {getattr(reason, 'strerror', None) or 'not text'}; "
+                       "give a file written by stability dispersion ... --csv") from None
+    comments = [line[1:].partition(":") for line in lines if line.startswith("#")]
+    header = {key.strip(): value.strip() for key, _, value in comments}
+    reader = csv.DictReader(line for line in lines if line.strip() and not line.startswith("#"))
+    columns = ("k", "growth_rate", "phase_speed")
+    absent = [column for column in columns if column not in (reader.fieldnames or ())]
+    if absent:
+        raise BadUsage(f"{_source(name)} has no column {', '.join(absent)}; "
+                       "give the output of stability dispersion ... --csv")
+    try:
+        rows = sorted((*(float(row[column]) for column in columns), float(row.get("error") or 0))
+                      for row in reader if row.get("status", "resolved") == "resolved")
+    except (TypeError, ValueError):
+        raise BadUsage(f"{_source(name)}: a row is not numbers; give the output of stability dispersion ... --csv") from None
+    if not rows or rows[0][0] <= 0:
+        raise BadUsage(f"{_source(name)} has no resolved row with k > 0; give at least four small wavenumbers")
+    return header, np.array(rows).T
+
+
+class _keep_open:
+    """A stream that its `with` block does not close."""
+
+    def __init__(self, stream):
+        self.stream = stream
+
+    def __enter__(self):
+        return self.stream
+
+    def __exit__(self, *_):
+        return None
+
+
+# -- output ----------------------------------------------------------------------------------------------
+
+
+def _json(expansion) -> str:
+    values = expansion.values()
+    terms = [{"power": str(power), "coefficient": str(c), "value": _pair(values[power])}
+             for power, c in expansion.terms.items()]
+    record = {
+        "flow": expansion.flow,
+        "regime": expansion.regime,
+        "gauge": str(expansion.gauge),
+        "parameters": {name: _plain(value) for name, value in expansion.parameters.items()},
+        "terms": terms,
+        "growth_rate": str(expansion.growth_rate),
+        "phase_speed": str(expansion.phase_speed),
+    }
+    return json.dumps(record, indent=1, allow_nan=False)
+
+
+def _pair(value):
+    return None if value is None else [value.real, value.imag]
+
+
+def _plain(value):
+    """A JSON number; infinity, which JSON lacks, as the string that the command line takes."""
+    if value is None:
+        return None
+    return float(value) if value.is_finite else "inf"
+
+
+def _latex(expansion) -> str:
+    from sympy import latex
+
+    lines = [rf"\sigma_{{{latex(power)}}} &= {latex(c)}" for power, c in expansion.terms.items()]
+    gauge = latex(expansion.gauge)
+    return "\n".join([rf"% \sigma = \sum_p \sigma_p {gauge}^p", *(line + r" \\" for line in lines)])
+
+
+def _table(expansion) -> str:
+    values = expansion.values()
+    cells = [("power", "value", "coefficient")]
+    for power, c in expansion.terms.items():
+        value = values[power]
+        cells.append((str(power), "-" if value is None else f"{value.real:+.12e} {value.imag:+.12e}i", str(c)))
+    widths = [max(len(row[column]) for row in cells) for column in range(2)]
+    return "\n".join(f"{power.rjust(widths[0])}  {value.ljust(widths[1])}  {c}" for power, value, c in cells)
