@@ -195,9 +195,9 @@ class WallResponse(sp.Function):
         if any(argument.free_symbols for argument in self.args):
             return None
         digits = max(16, int(prec / 3.3) + 2)
-        k, Re, depth = (float("inf") if argument == sp.oo else sp.Float(argument, digits)._to_mpmath(prec + 10)
-                        for argument in self.args)
-        return sp.sympify(response(k, Re, depth, digits))
+        k, Re, depth = (float("inf") if argument == sp.oo else argument._to_mpmath(prec + 10) for argument in self.args)
+        value = response(k, Re, depth, digits)
+        return sp.Float(value.real, digits) + sp.I * sp.Float(value.imag, digits)
 
     def _sympystr(self, printer):
         return f"R({', '.join(printer.doprint(argument) for argument in self.args)})"
@@ -210,15 +210,13 @@ def _short_wave_sum(mp, k, Re, digits):
     """The short-wave series, whose terms fall until about the (k^2/Re)-th."""
     with mp.workdps(digits + 10):
         ratio, total, n = mp.mpf(Re) / mp.mpf(k) ** 2, mp.mpc(0), 0
-        while True:
-            c = sp.re(short_wave_coefficient(n)), sp.im(short_wave_coefficient(n))
-            term = mp.mpc(*(mp.mpf(int(part.p)) / int(part.q) for part in c)) * ratio**n
-            total += term
-            n += 1
-            if abs(term) < mp.mpf(10) ** -(digits + 5) or n > 200:
-                break
+        term = mp.mpc(1)
+        while abs(term) > mp.mpf(10) ** -(digits + 5):
+            real, imaginary = short_wave_coefficient(n).as_real_imag()
+            term = mp.mpc(mp.mpf(real.p) / real.q, mp.mpf(imaginary.p) / imaginary.q) * ratio**n
+            total, n = total + term, n + 1
         total *= k
-    return +total
+    return total
 
 
 def _unbounded_response(mp, k, Re, digits):
@@ -242,7 +240,7 @@ def _unbounded_response(mp, k, Re, digits):
             total += term
             quiet, m = (quiet + 1 if abs(term) <= mp.eps * abs(total) else 0), m + 1
         result = -f * mp.airyai(q * q) / total
-    return +result
+    return result
 
 
 def _lid_response(mp, k, Re, depth, digits):
@@ -253,10 +251,9 @@ def _lid_response(mp, k, Re, depth, digits):
         first = _stream_function(mp, k, Re, h, (1, 0), 0)
         second = _stream_function(mp, k, Re, h, (0, 1), 0)
         wall = _stream_function(mp, k, Re, h, (0, 0), 1)
-        a, b = mp.lu_solve(mp.matrix([[first[0], second[0]], [first[1], second[1]]]),
-                           mp.matrix([-wall[0], -wall[1]]))
-        result = a
-    return +result
+        rows = mp.matrix([[first[0], second[0]], [first[1], second[1]]])
+        value, _ = mp.lu_solve(rows, mp.matrix([-wall[0], -wall[1]]))
+    return value
 
 
 def _stream_function(mp, k, Re, h, vorticity, slope):

@@ -23,7 +23,7 @@ class Expansion:
     terms        {power: exact coefficient}, in increasing order; a power that is known to vanish is 0
     next_power   power of the first term left out: the order at which the error must fall
     parameters   {name: value, or None while symbolic}
-    factor       what multiplies the whole sum (k for an expansion in another gauge at fixed k)
+    wavenumber   k, in terms of the gauge if that varies it
     """
 
     flow: str
@@ -33,6 +33,7 @@ class Expansion:
     parameters: Mapping[str, sp.Expr | None]
     gauge: sp.Symbol = k
     quantity: str = "sigma"
+    wavenumber: sp.Expr = k
 
     @cached_property
     def expression(self) -> sp.Expr:
@@ -46,7 +47,7 @@ class Expansion:
     @property
     def phase_speed(self) -> sp.Expr:
         """Real part of i sigma/k: positive downstream."""
-        return self._part(lambda c: -sp.im(c) / k)
+        return self._part(lambda c: -sp.im(c) / self.wavenumber)
 
     def coefficient(self, power) -> sp.Expr:
         return self.terms[sp.Rational(power)]
@@ -77,9 +78,9 @@ class Expansion:
         """A numpy function of the gauge (shape in, same shape out, complex), all parameters being numbers.
 
         >>> from asymptotics.flows import vortex
-        >>> sigma = vortex.long_wave().function(slope_deg=45, Fr2=0)
+        >>> sigma = vortex.long_wave_law().function(slope_deg=45, Fr2=0)
         >>> print(f"{sigma(0.1).real:.7f}")
-        -0.0039539
+        -0.0039536
         """
         import numpy as np
 

@@ -110,7 +110,7 @@ def boundary_layer(order=2) -> Expansion:
     """Unbounded fluid, k^2 << Re: (4.81), (4.82), a power 5/3 that vanishes, and the first corrections."""
     response = {symbol: fluid.boundary_layer_coefficient(m) for m, symbol in enumerate(_R_LAYER) if m % 2}
     powers = [sp.Rational(m + 3, 3) for m in range(1, int(3 * order) - 2)]
-    terms = {power: sp.expand_mul(_named(_layer_hierarchy().speed(int(3 * power) - 3), response) * power_of_i(power))
+    terms = {power: _named(_layer_hierarchy().speed(int(3 * power) - 3), response) * power_of_i(power)
              for power in powers}
     following = max(powers[-1] + sp.Rational(1, 3), sp.Integer(2))
     return Expansion("dune", "boundary-layer", terms, following, dict.fromkeys(("shields", "mu1", "b", "Re")))
@@ -127,12 +127,16 @@ def bed_damping() -> sp.Expr:
 
 
 def neutral_Re() -> sp.Expr:
-    """Re on the curve A = 0 of the shallow regime, as a function of shields, depth, mu1, b: stable below it."""
-    A = _named(_shallow_hierarchy().speed(1), {symbol: sp.Symbol(symbol.name) for symbol in _R_SHALLOW})
-    R0, R1 = (sp.Symbol(symbol.name) for symbol in _R_SHALLOW)
-    per_Re = sp.cancel(fluid.shallow_coefficient(1) / fluid.Re)
-    rest = A.subs({R1: 0, R0: fluid.shallow_coefficient(0)})
-    return -rest / (leading_flux() * per_Re)
+    """Re on the curve A = 0 of the shallow regime, as a function of shields, depth, mu1, b: stable below it.
+
+    >>> values = dict(shields=sp.Rational(3, 2), depth=10, mu1=sp.Rational(2, 5), b=1)
+    >>> curve = neutral_Re()
+    >>> print(curve.subs({s: values[s.name] for s in curve.free_symbols}).evalf(10))
+    0.1382290062
+    """
+    R0, R1 = _R_SHALLOW
+    rest = _named(_shallow_hierarchy().speed(1).subs(R1, 0), {R0: fluid.shallow_coefficient(0)})
+    return -rest / (leading_flux() * fluid.shallow_coefficient(1) / fluid.Re)
 
 
 def small_Re(order=1) -> Expansion:
@@ -144,7 +148,41 @@ def small_Re(order=1) -> Expansion:
     response = fluid.WallResponse(kappa, 1, sp.oo)
     coefficient = sp.I * leading_flux() * kappa * response - bed_damping() * kappa**2
     return Expansion("dune", "small-Re", {sp.Integer(1): coefficient}, sp.Rational(3, 2),
-                     dict.fromkeys(("shields", "mu1", "b", "kappa")), gauge=fluid.Re)
+                     dict.fromkeys(("shields", "mu1", "b", "kappa")), gauge=fluid.Re,
+                     wavenumber=kappa * sp.sqrt(fluid.Re))
+
+
+def small_Re_maximum(shields, mu1, digits: int = 15):
+    """kappa of the fastest growth as Re -> 0, where k_max ~ kappa sqrt(Re) (an mpmath number).
+
+    It maximises F(kappa) - (B/a) kappa^2, F = -kappa Im R(kappa, 1, oo), so it depends on shields and mu1 only:
+    a and B are both proportional to 1/b. F'(kappa)/kappa falls from infinity to 0, so there is one maximum
+    for every B/a > 0, that is for every shields > 1.
+
+    >>> print(small_Re_maximum(1.5, 0.4))
+    0.362362096410806
+    """
+    import mpmath as mp
+
+    names = {symbol.name: symbol for symbol in (bed_damping() / leading_flux()).free_symbols}
+    values = {names["shields"]: sp.Rational(str(shields)), names["mu1"]: sp.Rational(str(mu1))}
+    ratio = sp.cancel(bed_damping() * b / (leading_flux() * b)).subs(values).evalf(digits + 10)
+
+    def slope(log_kappa):
+        kappa = mp.exp(log_kappa)
+        growth = mp.diff(lambda q: -q * fluid.response(q, 1, digits=digits + exact).imag, kappa)
+        return growth / (2 * kappa) - mp.mpf(ratio)
+
+    exact = 3 * (digits + 8)  # mp.diff raises the precision threefold
+    with mp.workdps(digits + 8):
+        low = high = mp.mpf(0)
+        while slope(low) < 0:
+            low -= 1
+        while slope(high) > 0:
+            high += 1
+        found = mp.exp(mp.findroot(slope, (low, high), solver="anderson", tol=mp.mpf(10) ** (-2 * digits)))
+    with mp.workdps(digits):
+        return +found
 
 
 def near_yield(order=2) -> Expansion:
@@ -157,12 +195,12 @@ def near_yield(order=2) -> Expansion:
 def _named(coefficient: sp.Expr, response) -> sp.Expr:
     """Write r and the logarithms with shields, factor by factor, and put the response's coefficients in."""
     numerator, denominator = sp.fraction(coefficient)
-    letters = [*_LOGS, *(symbol for symbol in coefficient.free_symbols if symbol.name.startswith("R_"))]
+    letters = sorted({*_LOGS, *_R_LAYER[1::2], *_R_SHALLOW, b, mu1}, key=str)
     logs = {_LOGS[0]: -sp.log(shields) / 2, _LOGS[1]: sp.log((1 + 1 / sp.sqrt(shields)) / 2)}
     total = sp.Integer(0)
     for powers, c in sp.Poly(numerator, *letters).terms():
         monomial = sp.Mul(*(letter**power for letter, power in zip(letters, powers)))
-        total += (sp.factor(c / denominator) * monomial).subs({**logs, **response})
+        total += sp.factor(c * monomial / denominator).subs({**logs, **response})
     return total.subs(r, sp.sqrt(shields))
 
 
