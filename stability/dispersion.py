@@ -8,6 +8,7 @@ import numpy as np
 from .errors import ModeLost, ParameterError
 from .mode import DEGREES, TOLERANCE, Solver, require
 from .spectrum import leading_modes
+from .threads import one_thread
 from .tracking import follow, surface_mode
 
 MODES = ("surface", "most-unstable")
@@ -59,6 +60,7 @@ class DispersionRelation:
         return tuple(mode.status for mode in self.modes)
 
 
+@one_thread
 def dispersion(flow, k, mode="surface", *, tolerance=TOLERANCE, max_degree=DEGREES[-1], strict=True):
     """Return the `DispersionRelation` of a flow at wavenumbers k, a number or a sequence in any order.
 

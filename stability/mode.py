@@ -23,7 +23,7 @@ DEGREES = (8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 128, 160, 
 TOLERANCE = 1e-10  # default bound on error / |sigma| for a resolved mode
 
 _EPS = np.finfo(float).eps
-_ROUNDING = 2.0  # standard deviations of the accumulated rounding that the error bar spans
+_ROUNDING = 3.0  # standard deviations of the accumulated rounding that the error bar spans
 _MARGIN = 1e-5  # truncation is pushed this far below the tolerance, or below rounding
 _FACTORISATIONS = 12
 _LU = {"f": (lapack.dgetrf, lapack.dgetrs), "c": (lapack.zgetrf, lapack.zgetrs)}
@@ -236,7 +236,8 @@ def _quotient(pencil, weights, x, y, adjoint):
     slope = (weights.slope * c * power).sum() / norm
     spread = (weights.spread * np.abs(c * power)).sum() / abs(norm)
     factors = np.abs(weights.value * power)
-    variance = (factors**2 @ (pencil.squares @ np.abs(x) ** 2)) @ np.abs(y) ** 2
+    variance = (factors**2 @ (pencil.squares @ np.abs(x) ** 2)) @ np.abs(y) ** 2  # of matrix entries
+    variance += (np.abs(value * power) ** 2).sum() / abs(norm) ** 2  # of the weights, common to a part
     beyond = np.abs((weights.value * power) @ (pencil.tail @ x)).reshape(len(pencil.last), -1).sum(axis=1)
     truncation = beyond @ np.abs(y[pencil.last]).max(axis=1)
     return _Eigen(rate, slope, truncation, _EPS * np.sqrt(variance), spread, x, y,

@@ -13,9 +13,11 @@ import numpy as np
 
 from .errors import ModeLost, NotResolved
 from .mode import DEGREES, TOLERANCE, Solver
+from .threads import one_thread
 from .tracking import follow, surface_mode
 
 SEARCH = (1e-3, 100.0)  # default range of k; the lower end moves down until growth is a power law
+_ROUGH = 1e-3  # tolerance of the global look: small systems find the brackets
 _STEP = 0.2  # of the global look, in log k
 _DECAYED = 10.0  # the look ends once the mode has decayed over this factor in k
 _ITERATIONS = 20
@@ -70,6 +72,7 @@ class Optimum:
         return self.best.mode.phase_speed
 
 
+@one_thread
 def k_max(flow, search=SEARCH, *, tolerance=TOLERANCE, max_degree=DEGREES[-1], strict=True):
     """Return the `Optimum` of a flow: where the growth rate of its surface mode is largest.
 
@@ -78,7 +81,7 @@ def k_max(flow, search=SEARCH, *, tolerance=TOLERANCE, max_degree=DEGREES[-1], s
     """
     solver = Solver(flow, tolerance, max_degree)
     try:
-        modes, status = _look(solver, *search)
+        modes, status = _look(Solver(flow, max(tolerance, _ROUGH), max_degree), *search)
         maxima = [_refine(solver, left, right) for left, right in zip(modes, modes[1:], strict=False)
                   if _growth_slope(left) > 0 >= _growth_slope(right)]
     except ModeLost as reason:
@@ -111,7 +114,7 @@ def _look(solver, low, high):
         modes += path.visited[1:]
         if path.lost:
             return modes, path.lost
-        if all(m.growth_rate < 0 and _growth_slope(m) < 0 for m in modes[-chunk:]):
+        if all(mode.growth_rate < 0 for mode in modes[-chunk - 1:]):
             break
     if _growth_slope(modes[-1]) > 0 and modes[-1].growth_rate > 0:
         return modes, f"growth still rises at k = {modes[-1].k:g}, the end of the search"

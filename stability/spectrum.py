@@ -13,6 +13,7 @@ import numpy as np
 
 from .errors import ModeLost
 from .mode import DEGREES, TOLERANCE, Solver, require
+from .threads import one_thread
 
 _SHIFT = 0.01 - 0.013j  # tried when the pencil is singular at rate 0
 _FLOOR = 1e-12  # zeros of G lie below this fraction of the largest theta (measured: below 1e-13)
@@ -60,6 +61,7 @@ def _finite_count(sizes):
     return int(np.argmin(ratios)) + 1 if len(ratios) and ratios.min() < 1e-3 else len(sizes)
 
 
+@one_thread
 def spectrum(flow, k, modes=10, *, tolerance=TOLERANCE, max_degree=DEGREES[-1], strict=True):
     """Return the `modes` least stable modes at wavenumber k, each refined to its own degree with an error bar.
 

@@ -19,6 +19,7 @@ _SMALLEST_STEP = 1e-6
 _PREDICTION = 0.05  # relative error of the predictor at which the step length is kept
 _OVERLAP = 0.4  # largest deviation of the overlap from 1
 _STEPS = 2000
+_AGREEMENT = 0.03  # of the surface mode with its long-wave limit, in value and in slope
 
 
 @dataclass(frozen=True)
@@ -49,17 +50,22 @@ class Path:
 
 
 def surface_mode(solver, k):
-    """Return the slow surface mode at a small wavenumber <= k, from its long-wave limit."""
-    for _ in range(12):
-        guess = solver.flow.long_wave(k)
+    """Return the slow surface mode at a small wavenumber <= k, where it obeys its long-wave limit.
+
+    Value and logarithmic slope must both agree: another mode can meet one of them by chance.
+    """
+    for _ in range(16):
+        guess, ahead = solver.flow.long_wave(np.array([k, 1.01 * k]))
+        exponent = np.log(ahead / guess) / log(1.01)
         try:
             mode = solver.solve(k, guess / solver.width(k))
         except ModeLost:
             mode = None
-        if mode is not None and abs(mode.sigma - guess) < 0.1 * abs(guess):
+        if mode is not None and abs(mode.sigma / guess - 1) < _AGREEMENT \
+                and abs(mode.k * mode.slope / mode.sigma - exponent) < _AGREEMENT:
             return mode
         k = k / 5
-    raise ModeLost(f"{solver.flow}: no mode near the long-wave limit down to k = {k:.1e}")
+    raise ModeLost(f"{solver.flow}: no mode obeys the long-wave limit down to k = {k:.1e}")
 
 
 def follow(solver, start, wavenumbers):
@@ -170,7 +176,10 @@ class _Walk:
             return False
         beyond = k if reach < 2 else 2 * ahead - now.k
         guess = middle + half * (beyond / ahead - 1) ** 0.5 / (1 - now.k / ahead) ** 0.5
-        mode = self.solver.solve(beyond, guess, (now.degree, now.x, now.y))
+        try:
+            mode = self.solver.solve(beyond, guess, (now.degree, now.x, now.y))
+        except ModeLost:
+            return False
         if abs(mode.rate - guess) > 0.5 * abs(guess - middle):
             return False
         sigma = self.solver.width(ahead) * middle
