@@ -69,8 +69,8 @@ class Linearisation:
         rate, pressure = sp.symbols("rate pressure", positive=True)
         law = self.viscosity(rate, pressure)
         state = {rate: sp.diff(self.velocity, z), pressure: self.pressure}
-        return {U: self.velocity, P: self.pressure, eta: law.subs(state),
-                eta_rate: sp.diff(law, rate).subs(state), eta_pressure: sp.diff(law, pressure).subs(state)}
+        laws = {eta: law, eta_rate: sp.diff(law, rate), eta_pressure: sp.diff(law, pressure)}
+        return {U: self.velocity, P: self.pressure} | {name: sp.factor(value.subs(state)) for name, value in laws.items()}
 
     def concrete(self, expression: sp.Expr) -> sp.Expr:
         """Put the base state's values in."""
