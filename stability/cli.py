@@ -16,7 +16,7 @@ from .errors import ParameterError, StabilityError
 from .flows import FLOWS
 from .flows.base import allowed
 from .mode import DEGREES, TOLERANCE
-from .optimum import k_max
+from .optimum import k_max_sweep
 from .output import render, whole_file, write
 from .specs import parse_spec
 from .spectrum import spectrum
@@ -139,7 +139,7 @@ def _spectrum(arguments):
     wavenumbers = parse_spec(arguments.k, "--k")
 
     def compute():
-        found = [spectrum(flow, k, count, **options) for k in wavenumbers]
+        found = [spectrum(flow, k, count, strict=False, **options) for k in wavenumbers]
         return [_row(mode) for one in found for mode in one.modes], found, []
 
     return _report(arguments, flow, compute)
@@ -152,7 +152,7 @@ def _dispersion(arguments):
         raise ParameterError(f"--mode: must be one of {', '.join(MODES)} (got {arguments.mode!r})")
 
     def compute():
-        relation = dispersion(flow, wavenumbers, arguments.mode, **options)
+        relation = dispersion(flow, wavenumbers, arguments.mode, strict=False, **options)
         found = {mode.k: mode for mode in relation.modes}
         rows = [_row(found[k]) if k in found else _lost_row(k) for k in wavenumbers.tolist()]
         notes = sorted({str(collision) for collision in relation.collisions} | set(relation.lost.values()))
@@ -167,9 +167,9 @@ def _kmax(arguments):
 
     def compute():
         found = []
-        for index, one in enumerate(sweep, 1):
-            found.append(k_max(one, **options))
-            _progress(arguments, index, len(sweep))
+        for optimum in k_max_sweep(sweep, **options):
+            found.append(optimum)
+            _progress(arguments, len(found), len(sweep))
         return [_kmax_row(name, optimum) for optimum in found], (name, found), []
 
     return _report(arguments, flow, compute)
@@ -260,7 +260,7 @@ def _options(arguments):
     tolerance = parse_spec(arguments.tolerance, "--tolerance")[0]
     if not 1e-15 <= tolerance <= 0.1:
         raise ParameterError(f"--tolerance: must lie in [1e-15, 0.1] (got {tolerance:g})")
-    return {"tolerance": tolerance, "strict": False,
+    return {"tolerance": tolerance,
             "max_degree": _integer(arguments.max_degree, "--max-degree", DEGREES[0], DEGREES[-1])}
 
 

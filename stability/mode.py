@@ -24,7 +24,6 @@ TOLERANCE = 1e-10  # default bound on error / |sigma| for a resolved mode
 
 _EPS = np.finfo(float).eps
 _ROUNDING = 3.0  # standard deviations of the accumulated rounding that the error bar spans
-_MARGIN = 1e-5  # truncation is pushed this far below the tolerance, or below rounding
 _FACTORISATIONS = 12
 _LU = {"f": (lapack.dgetrf, lapack.dgetrs), "c": (lapack.zgetrf, lapack.zgetrs)}
 
@@ -69,21 +68,41 @@ class Mode:
         return self.c.real
 
 
-class Solver:
-    """Refines modes of one flow; keeps the pencils it has assembled, one per degree."""
+class Assembly:
+    """The pencils of a system of equations, each degree assembled when first asked for."""
 
-    def __init__(self, flow, tolerance=TOLERANCE, max_degree=DEGREES[-1]):
-        self.flow = flow
-        self.tolerance = tolerance
-        self.degrees = tuple(d for d in DEGREES if d <= max_degree) or (max_degree,)
-        self._system = System(flow)
+    def __init__(self, flow):
+        self.system = System(flow)
         self._pencils = {}
-        self._symbols = {}
 
     def pencil(self, degree):
         if degree not in self._pencils:
-            self._pencils[degree] = Pencil(self._system, degree)
+            self._pencils[degree] = Pencil(self.system, degree)
         return self._pencils[degree]
+
+    def serving(self, flow):
+        """Return this assembly if its equations are those of `flow` too, else a new one.
+
+        Parameters that enter only through functions of k leave the matrices alone.
+        """
+        other = Assembly(flow)
+        return self if other.system == self.system else other
+
+
+class Solver:
+    """Refines modes of one flow to a relative tolerance, within a largest degree.
+
+    The degree is raised until the truncation error is below `margin` * tolerance, or below rounding.
+    """
+
+    def __init__(self, flow, tolerance=TOLERANCE, max_degree=DEGREES[-1], assembly=None, margin=1e-5):
+        self.flow = flow
+        self.tolerance = tolerance
+        self.margin = margin
+        self.degrees = tuple(d for d in DEGREES if d <= max_degree) or (max_degree,)
+        self.assembly = assembly or Assembly(flow)
+        self.pencil = self.assembly.pencil
+        self._symbols = {}
 
     def prepare(self, k):
         """Evaluate the flow's functions of k for a whole array (count,) at once."""
@@ -113,7 +132,7 @@ class Solver:
             x, y = transfer(self, vectors, degree) if vectors else (None, None)
             eigen = _refine(pencil, pencil.weights(self.symbols(k)), rate, x, y)
             mode = self._mode(k, degree, eigen)
-            if mode.truncation <= max(mode.rounding, _MARGIN * self.tolerance * abs(mode.sigma)):
+            if mode.truncation <= max(mode.rounding, self.margin * self.tolerance * abs(mode.sigma)):
                 break
             rate, vectors = eigen.rate, (degree, eigen.x, eigen.y)
         return mode

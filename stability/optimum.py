@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 
 from .errors import ModeLost, NotResolved
-from .mode import DEGREES, TOLERANCE, Solver
+from .mode import DEGREES, TOLERANCE, Assembly, Solver
 from .threads import one_thread
 from .tracking import follow, surface_mode
 
 SEARCH = (1e-3, 100.0)  # default range of k; the lower end moves down until growth is a power law
 _ROUGH = 1e-3  # tolerance of the global look: small systems find the brackets
-_STEP = 0.2  # of the global look, in log k
+_STEP = 0.25  # of the global look, in log k
 _DECAYED = 10.0  # the look ends once the mode has decayed over this factor in k
 _ITERATIONS = 20
 _SLOPE_ERROR = 4.0  # error of d sigma/dk in units of error of sigma / k (measured)
@@ -72,25 +72,41 @@ class Optimum:
         return self.best.mode.phase_speed
 
 
-@one_thread
 def k_max(flow, search=SEARCH, *, tolerance=TOLERANCE, max_degree=DEGREES[-1], strict=True):
     """Return the `Optimum` of a flow: where the growth rate of its surface mode is largest.
 
     Only maxima with positive growth rate count: a flow that decays everywhere has none. Raises
     NotResolved if there is none; with strict=False the record says so in `status`.
     """
-    solver = Solver(flow, tolerance, max_degree)
+    (optimum,) = k_max_sweep([flow], search, tolerance=tolerance, max_degree=max_degree)
+    if strict and optimum.status != "resolved":
+        raise NotResolved(f"{flow}: {optimum.status}")
+    return optimum
+
+
+def k_max_sweep(flows, search=SEARCH, *, tolerance=TOLERANCE, max_degree=DEGREES[-1]):
+    """Yield the `Optimum` of each flow in turn; what failed is in its status.
+
+    Flows with the same equations share their matrices (dunes at different Re, say).
+    """
+    assembly = None
+    for flow in flows:
+        assembly = assembly.serving(flow) if assembly else Assembly(flow)
+        yield _optimum(flow, search, tolerance, max_degree, assembly)
+
+
+@one_thread
+def _optimum(flow, search, tolerance, max_degree, assembly):
+    look = Solver(flow, max(tolerance, _ROUGH), max_degree, assembly, margin=0.01)
+    solver = Solver(flow, tolerance, max_degree, assembly)
     try:
-        modes, status = _look(Solver(flow, max(tolerance, _ROUGH), max_degree), *search)
+        modes, status = _look(look, *search)
         maxima = [_refine(solver, left, right) for left, right in zip(modes, modes[1:], strict=False)
                   if _growth_slope(left) > 0 >= _growth_slope(right)]
     except ModeLost as reason:
         maxima, status = [], str(reason)
     maxima = sorted((m for m in maxima if m.growth_rate > 0), key=lambda m: -m.growth_rate)
-    optimum = Optimum(flow, tuple(maxima), _status(maxima, status, search))
-    if strict and optimum.status != "resolved":
-        raise NotResolved(f"{flow}: {optimum.status}")
-    return optimum
+    return Optimum(flow, tuple(maxima), _status(maxima, status, search))
 
 
 def _status(maxima, status, search):

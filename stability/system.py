@@ -41,6 +41,11 @@ class System:
         self.conditions = tuple(self._terms(form) for form in flow.conditions(edges, names))
         _check_count(flow, layers, len(self.conditions))
 
+    def __eq__(self, other):
+        return _same(self.equations, other.equations) and _same(self.conditions, other.conditions)
+
+    __hash__ = None
+
     def _equations(self, layer, names, order):
         fields = [symbol(f"{layer.name}.{field}") for field in FIELDS]
         slopes = [symbol(f"{layer.name}.{field}'") for field in FIELDS]
@@ -61,6 +66,17 @@ class System:
             monomial = tuple(name for name in names if name != unknowns[0])
             terms.append((unknowns[0], monomial, _series(coefficient)))
         return tuple(terms)
+
+
+def _same(one, other):
+    """Equality of nested tuples whose leaves may be arrays."""
+    if isinstance(one, np.ndarray):
+        return np.array_equal(one, other)
+    if isinstance(one, Equation):
+        return one.name == other.name and one.extra == other.extra and _same(one.terms, other.terms)
+    if isinstance(one, tuple):
+        return len(one) == len(other) and all(_same(a, b) for a, b in zip(one, other, strict=True))
+    return one == other
 
 
 def _edge(layer, end):

@@ -15,7 +15,7 @@ from .mode import transfer
 
 _FIRST_STEP = 0.3  # in log k
 _LARGEST_STEP = 1.5
-_SMALLEST_STEP = 1e-6
+_SMALLEST_STEP = 1e-8
 _PREDICTION = 0.05  # relative error of the predictor at which the step length is kept
 _OVERLAP = 0.4  # largest deviation of the overlap from 1
 _STEPS = 2000
@@ -172,10 +172,11 @@ class _Walk:
             middle = now.rate.real + (ahead - now.k) * slope.real
             half = abs(now.rate.imag)
         reach = (k - now.k) / (ahead - now.k)
-        if not 1 < reach < 100:
+        if not 1 < reach < 1e6:
             return False
-        beyond = k if reach < 2 else 2 * ahead - now.k
-        guess = middle + half * (beyond / ahead - 1) ** 0.5 / (1 - now.k / ahead) ** 0.5
+        distance = min(abs(k - ahead), max(abs(ahead - now.k), 1e-4 * ahead))
+        beyond = ahead + copysign(distance, k - ahead)
+        guess = middle + half * (distance / abs(ahead - now.k)) ** 0.5
         try:
             mode = self.solver.solve(beyond, guess, (now.degree, now.x, now.y))
         except ModeLost:
