@@ -7,11 +7,11 @@
 """
 
 from . import flows
-from .dispersion import DispersionRelation, dispersion
 from .errors import ModeLost, NotResolved, ParameterError, StabilityError
 from .mode import Mode
 from .optimum import Optimum, k_max
-from .spectrum import Spectrum, spectrum
+from .relation import DispersionRelation, dispersion
+from .spectra import Spectrum, spectrum
 
 __version__ = "0.1.0"
 

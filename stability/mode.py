@@ -65,7 +65,7 @@ class Mode:
 
     @property
     def phase_speed(self):
-        return self.c.real
+        return self.c.real + 0.0  # no negative zero
 
 
 class Assembly:

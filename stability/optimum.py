@@ -16,7 +16,7 @@ from .mode import DEGREES, TOLERANCE, Assembly, Solver
 from .threads import one_thread
 from .tracking import follow, surface_mode
 
-SEARCH = (1e-3, 100.0)  # default range of k; the lower end moves down until growth is a power law
+SEARCH = (1e-2, 100.0)  # default range of k; the lower end moves down until growth is a power law
 _ROUGH = 1e-3  # tolerance of the global look: small systems find the brackets
 _STEP = 0.25  # of the global look, in log k
 _DECAYED = 10.0  # the look ends once the mode has decayed over this factor in k
@@ -91,12 +91,13 @@ def k_max_sweep(flows, search=SEARCH, *, tolerance=TOLERANCE, max_degree=DEGREES
     """
     assembly = None
     for flow in flows:
-        assembly = assembly.serving(flow) if assembly else Assembly(flow)
-        yield _optimum(flow, search, tolerance, max_degree, assembly)
+        optimum, assembly = _optimum(flow, search, tolerance, max_degree, assembly)
+        yield optimum
 
 
 @one_thread
 def _optimum(flow, search, tolerance, max_degree, assembly):
+    assembly = assembly.serving(flow) if assembly else Assembly(flow)
     look = Solver(flow, max(tolerance, _ROUGH), max_degree, assembly, margin=0.01)
     solver = Solver(flow, tolerance, max_degree, assembly)
     try:
@@ -106,7 +107,7 @@ def _optimum(flow, search, tolerance, max_degree, assembly):
     except ModeLost as reason:
         maxima, status = [], str(reason)
     maxima = sorted((m for m in maxima if m.growth_rate > 0), key=lambda m: -m.growth_rate)
-    return Optimum(flow, tuple(maxima), _status(maxima, status, search))
+    return Optimum(flow, tuple(maxima), _status(maxima, status, search)), assembly
 
 
 def _status(maxima, status, search):
@@ -138,11 +139,16 @@ def _look(solver, low, high):
 
 
 def _power_law_start(solver, k):
-    """The surface mode at a k so small that growth is a power of k: no maximum lies below."""
+    """The surface mode at a k so small that growth is a power of k there and a decade below: no maximum lies lower."""
+    above = None
     for _ in range(8):
         mode = surface_mode(solver, k)
-        if 0.9 < mode.k * _growth_slope(mode) / mode.growth_rate < 2.5:
-            return mode
+        if not 0.9 < mode.k * _growth_slope(mode) / mode.growth_rate < 2.5:
+            above = None
+        elif above:
+            return above
+        else:
+            above = mode
         k = mode.k / 10
     raise ModeLost(f"{solver.flow}: growth follows no power of k down to k = {k:.1e}")
 

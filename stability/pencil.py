@@ -41,7 +41,7 @@ class Pencil:
 
     def __init__(self, system, degree):
         self.degree = degree
-        lengths = {field: degree + 1 for field in system.fields} | {surface: 1 for surface in system.surfaces}
+        lengths = dict.fromkeys(system.fields, degree + 1) | dict.fromkeys(system.surfaces, 1)
         self.columns = _slices(lengths)
         self.rows = _slices({equation.name: degree + equation.extra for equation in system.equations}
                             | {"conditions": len(system.conditions)})

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .dispersion import DispersionRelation
+from .relation import DispersionRelation
 
 STYLE = {
     "figure.constrained_layout.use": True,

@@ -3,7 +3,6 @@ import random
 
 import mpmath as mp
 import pytest
-
 from references import dune, vortex, wall_response
 
 # k, Re, depth, -R to 22 significant digits: exact Airy integrals.

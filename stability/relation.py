@@ -7,7 +7,7 @@ import numpy as np
 
 from .errors import ModeLost, ParameterError
 from .mode import DEGREES, TOLERANCE, Solver, require
-from .spectrum import leading_modes
+from .spectra import leading_modes
 from .threads import one_thread
 from .tracking import follow, surface_mode
 

@@ -1,0 +1,5 @@
+"""The verbs of the command line, one module each with a function `add(verbs)`."""
+
+from . import dispersion, flows, kmax, spectrum
+
+VERBS = (flows, spectrum, dispersion, kmax)

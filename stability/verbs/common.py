@@ -1,0 +1,147 @@
+"""What the verbs share: flows and their flags, common options, and the report of a result."""
+
+import sys
+from contextlib import ExitStack
+from dataclasses import fields, replace
+from difflib import get_close_matches
+
+from .. import __version__
+from ..errors import ParameterError
+from ..flows import FLOWS
+from ..flows.base import allowed
+from ..mode import DEGREES, TOLERANCE
+from ..output import render, whole_file, write
+from ..specs import parse_spec
+
+SPEC = "a number, a list a,b,c, or a range a:b:n (log-spaced) or a:b:n:lin"
+_PLOTS = (".png", ".pdf", ".svg")
+
+
+def add_verb(verbs, name, run, summary, example, *options):
+    """Add a verb that takes a flow, its parameters, the common options and whatever `options` add."""
+    verb = verbs.add_parser(name, help=summary, description=summary[0].upper() + summary[1:] + ".",
+                            epilog=f"example: {example}", allow_abbrev=False)
+    verb.add_argument("flow", metavar="FLOW", help=f"one of {', '.join(FLOWS)}")
+    for option in options:
+        option(verb)
+    for flow in FLOWS.values():
+        group = verb.add_argument_group(f"parameters of {flow.name}")
+        for item in fields(flow):
+            if flag(item) not in verb._option_string_actions:
+                group.add_argument(flag(item), dest=f"parameter {item.name}", metavar="V",
+                                   help=f"{item.metadata['meaning']}; {allowed(item.metadata)}, default {item.default}")
+    verb.add_argument("--tolerance", metavar="T", default=str(TOLERANCE), help="relative error of sigma accepted as resolved")
+    verb.add_argument("--max-degree", metavar="N", default=str(DEGREES[-1]), help="largest Chebyshev degree tried")
+    form = verb.add_mutually_exclusive_group()
+    form.add_argument("--csv", dest="form", action="store_const", const="csv", help="comma-separated values")
+    form.add_argument("--json", dest="form", action="store_const", const="json", help="JSON")
+    verb.add_argument("-o", "--output", metavar="FILE", help="write there instead of standard output")
+    verb.add_argument("--plot", metavar="FILE", help="draw the result: .png, .pdf or .svg")
+    verb.add_argument("--quiet", action="store_true", help="no progress and no warnings on standard error")
+    verb.set_defaults(run=run, form="table")
+
+
+def flag(item):
+    """Command-line flag of a parameter."""
+    return "--" + item.name.replace("_", "-")
+
+
+def k_option(verb):
+    verb.add_argument("--k", required=True, metavar="SPEC", help=f"wavenumbers: {SPEC}")
+
+
+def flow_class(name):
+    if name not in FLOWS:
+        raise ParameterError(f"unknown flow {name!r}{_nearest(name, FLOWS)}; flows: {', '.join(FLOWS)}")
+    return FLOWS[name]
+
+
+def flow_of(arguments):
+    """The flow with the parameters given as flags."""
+    flow = flow_class(arguments.flow)
+    known = {item.name for item in fields(flow)}
+    given = {key.partition(" ")[2]: value for key, value in vars(arguments).items()
+             if key.startswith("parameter ") and value is not None}
+    for name in given:
+        if name not in known:
+            raise ParameterError(f"{flow.name} has no parameter {name}; it has {', '.join(sorted(known))}")
+    return flow(**given)
+
+
+def sweep_of(arguments, flow):
+    """The swept parameter's name (or None) and the flows of the sweep."""
+    if arguments.over is None:
+        return None, [flow]
+    name, _, spec = arguments.over.partition("=")
+    name = name.replace("-", "_")
+    known = [item.name for item in fields(flow) if "options" not in item.metadata]
+    if name not in known:
+        raise ParameterError(f"--over: {flow.name} has no parameter {name!r}{_nearest(name, known)}; "
+                             f"it has {', '.join(known)}")
+    return name, [replace(flow, **{name: value}) for value in parse_spec(spec, f"--over {name}", False).tolist()]
+
+
+def options_of(arguments):
+    tolerance = parse_spec(arguments.tolerance, "--tolerance")[0]
+    if not 1e-15 <= tolerance <= 0.1:
+        raise ParameterError(f"--tolerance: must lie in [1e-15, 0.1] (got {tolerance:g})")
+    return {"tolerance": tolerance,
+            "max_degree": integer(arguments.max_degree, "--max-degree", DEGREES[0], DEGREES[-1])}
+
+
+def integer(text, name, low, high):
+    value = int(text) if text.isdecimal() else None
+    if value is None or not low <= value <= high:
+        raise ParameterError(f"{name}: must be an integer from {low} to {high} (got {text!r})")
+    return value
+
+
+def mode_row(mode):
+    return {"k": mode.k, "growth_rate": mode.growth_rate, "phase_speed": mode.phase_speed, "error": mode.error,
+            "degree": mode.degree, "status": mode.status}
+
+
+def lost_row(k):
+    return {"k": k, "growth_rate": None, "phase_speed": None, "error": None, "degree": None, "status": "lost"}
+
+
+def report(arguments, flow, compute):
+    """Check where output goes, compute, write it; return the exit status."""
+    with ExitStack() as stack:
+        out = stack.enter_context(whole_file(arguments.output, "-o")) if arguments.output else None
+        plot = _plot_file(arguments, stack)
+        rows, result, notes = compute()
+        header = {"flow": flow.name, "parameters": {item.name: getattr(flow, item.name) for item in fields(flow)},
+                  "method": "collocation", "version": __version__}
+        if notes:
+            header["notes"] = notes
+        if plot:
+            from ..plots import draw  # matplotlib takes longer to import than most results to compute
+
+            draw(result, plot)
+        failed = [row for row in rows if row["status"] != "resolved"]
+        if not arguments.quiet:
+            for note in notes:
+                print(f"stability: {note}", file=sys.stderr)
+            if failed:
+                print(f"stability: {len(failed)} of {len(rows)} rows are not resolved: see status", file=sys.stderr)
+        write(render(arguments.form, header, rows), out)
+    return 3 if failed else 0
+
+
+def progress(arguments, done, total):
+    if sys.stderr.isatty() and not arguments.quiet:
+        print(f"\r{done}/{total}", end="" if done < total else "\r\033[K", file=sys.stderr, flush=True)
+
+
+def _plot_file(arguments, stack):
+    if not arguments.plot:
+        return None
+    if not arguments.plot.endswith(_PLOTS):
+        raise ParameterError(f"--plot: the file must end in {', '.join(_PLOTS)} (got {arguments.plot!r})")
+    return stack.enter_context(whole_file(arguments.plot, "--plot"))
+
+
+def _nearest(name, known):
+    match = get_close_matches(name, known, 1)
+    return f" (did you mean {match[0]!r}?)" if match else ""

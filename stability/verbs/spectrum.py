@@ -1,0 +1,26 @@
+"""stability spectrum: the least stable modes at one wavenumber."""
+
+from ..specs import parse_spec
+from ..spectra import spectrum
+from .common import add_verb, flow_of, integer, k_option, mode_row, options_of, report
+
+
+def add(verbs):
+    add_verb(verbs, "spectrum", _run, "the least stable modes at one wavenumber",
+             "stability spectrum vortex --k 2 --modes 5", k_option, _modes_option)
+
+
+def _modes_option(verb):
+    verb.add_argument("--modes", default="10", metavar="M", help="how many modes (default 10)")
+
+
+def _run(arguments):
+    flow, options = flow_of(arguments), options_of(arguments)
+    count = integer(arguments.modes, "--modes", 1, 200)
+    wavenumbers = parse_spec(arguments.k, "--k")
+
+    def compute():
+        found = [spectrum(flow, k, count, strict=False, **options) for k in wavenumbers.tolist()]
+        return [mode_row(mode) for one in found for mode in one.modes], found, []
+
+    return report(arguments, flow, compute)
