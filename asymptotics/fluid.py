@@ -162,7 +162,7 @@ def _short_wave_vorticity(n: int) -> sp.Expr:
     return polynomial - 2 * (total + (1 if n == 0 else 0))
 
 
-def short_waves(terms=3) -> Expansion:
+def short_waves(terms=2) -> Expansion:
     """R = -2 k - i Re/(2 k) + ... in falling powers of k."""
     found = {sp.Integer(1 - 2 * n): short_wave_coefficient(n) * Re**n for n in range(terms)}
     return Expansion("fluid", "short-waves", found, sp.Integer(1 - 2 * terms), {"Re": None}, quantity="R")
