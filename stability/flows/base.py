@@ -7,13 +7,13 @@ from typing import ClassVar
 from ..errors import ParameterError
 
 
-def parameter(default, low=None, high=None, *, meaning, reason="", unbounded=False):
+def parameter(default, low=None, high=None, *, meaning, reason="", closed=False, unbounded=False):
     """Declare a numeric parameter with its open range low < value < high, its meaning and the reason.
 
-    `unbounded` admits inf as a value.
+    `closed` admits `low` itself as a value, `unbounded` admits inf.
     """
-    return field(default=default, metadata={"low": low, "high": high, "meaning": meaning,
-                                            "reason": reason, "unbounded": unbounded})
+    return field(default=default, metadata={"low": low, "high": high, "meaning": meaning, "reason": reason,
+                                            "closed": closed, "unbounded": unbounded})
 
 
 def choice(*options, meaning):
@@ -48,7 +48,12 @@ class Flow:
 
     def long_wave(self, k):
         """Return the leading-order growth rate sigma of the slow surface mode as k -> 0."""
-        raise NotImplementedError(f"{self.name} has no slow surface mode: ask for mode='most-unstable'")
+        raise ParameterError(f"{self.name} has no slow surface mode: ask for mode most-unstable")
+
+    @classmethod
+    def has_surface_mode(cls):
+        """Whether there is a slow surface mode to follow from k -> 0."""
+        return cls.long_wave is not Flow.long_wave
 
 
 def check_parameter(flow, item, value):
@@ -62,7 +67,8 @@ def check_parameter(flow, item, value):
         number = float(value)
     except (TypeError, ValueError):
         raise ParameterError(f"{flow}: {item.name} must be a number in {allowed(rule)} (got {value!r})") from None
-    inside = (rule["low"] is None or number > rule["low"]) and (rule["high"] is None or number < rule["high"])
+    inside = (rule["low"] is None or number > rule["low"] or rule["closed"] and number == rule["low"]) \
+        and (rule["high"] is None or number < rule["high"])
     if not inside or not (isfinite(number) or rule["unbounded"] and number > 0):
         reason = f": {rule['reason']}" if rule["reason"] else ""
         raise ParameterError(f"{flow}: {item.name} must lie in {allowed(rule)}{reason} (got {number:g})")
@@ -70,9 +76,9 @@ def check_parameter(flow, item, value):
 
 
 def allowed(rule):
-    """The admissible values in words: `(1, inf)` is open, `(0, inf]` admits inf, `a | b` is a choice."""
+    """The admissible values in words: `(1, inf)` is open, `[0, inf]` admits its ends, `a | b` is a choice."""
     if "options" in rule:
         return " | ".join(rule["options"])
     low = "-inf" if rule["low"] is None else f"{rule['low']:g}"
     high = "inf" if rule["high"] is None else f"{rule['high']:g}"
-    return f"({low}, {high}{']' if rule['unbounded'] else ')'}"
+    return f"{'[' if rule['closed'] else '('}{low}, {high}{']' if rule['unbounded'] else ')'}"

@@ -1,0 +1,34 @@
+"""Plane Couette flow: two plates sliding past each other."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from ..layer import Layer, Profile
+from .base import Flow, parameter
+
+
+@dataclass(frozen=True)
+class Couette(Flow):
+    """Perturbations exp(i k x + sigma t) of U = z between plates at z = -1 and z = 1: Orr-Sommerfeld.
+
+    Reflection in the centre turns the mode of wave speed c into that of -conj(c): modes come in pairs.
+    """
+
+    name: ClassVar[str] = "couette"
+    title: ClassVar[str] = "plane Couette flow between two plates"
+    scales: ClassVar[str] = ("length: half the distance of the plates; velocity: half their difference in speed; "
+                             "Re: half-width * half the speed difference / kinematic viscosity")
+
+    Re: float = parameter(1000.0, 0, meaning="Reynolds number of half-width and half the wall speed difference")
+
+    def layers(self, names):
+        return (Layer("fluid", lambda s: profile(s, self.Re)),)
+
+    def conditions(self, edges, names):
+        """No slip."""
+        bottom, top = edges.fluid
+        return bottom.v, bottom.w, top.v, top.w
+
+
+def profile(s, Re):
+    return Profile(dz=2.0, U=2 * s - 1, dU=1.0, eta=1 / Re, beta=1 / Re)

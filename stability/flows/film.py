@@ -1,0 +1,57 @@
+"""A liquid film falling down an inclined plane (Benjamin 1957, Yih 1963)."""
+
+from dataclasses import dataclass
+from math import cos, radians, sin
+from typing import ClassVar
+
+from ..layer import Layer, Profile
+from .base import Flow, parameter
+
+
+@dataclass(frozen=True)
+class Film(Flow):
+    """Perturbations exp(i k x + sigma t) of U = 2 z - z^2 on 0 <= z <= 1: Orr-Sommerfeld with a free surface.
+
+    Steady flow fixes gravity in these scales: its component down the slope is 2/Re, across it 2 cot(slope)/Re.
+    """
+
+    name: ClassVar[str] = "film"
+    title: ClassVar[str] = "liquid film falling down an inclined plane"
+    scales: ClassVar[str] = ("length: depth of the film; velocity: at its surface; "
+                             "Re: depth * surface speed / kinematic viscosity, 3/2 of the one on the mean speed; "
+                             "We: surface tension / (density * surface speed^2 * depth)")
+    surfaces: ClassVar[tuple[str, ...]] = ("s0",)
+
+    Re: float = parameter(10.0, 0, meaning="Reynolds number of depth and surface speed")
+    slope_deg: float = parameter(30.0, 0, 180, meaning="inclination of the plane, degrees; beyond 90 the film hangs from it")
+    We: float = parameter(0.0, 0, closed=True, meaning="surface tension / (density * surface speed^2 * depth)")
+
+    def layers(self, names):
+        return (Layer("liquid", lambda s: profile(s, self.Re)),)
+
+    def conditions(self, edges, names):
+        """No slip on the plane; on the displaced surface no shear stress and the pressure of surface tension.
+
+        The base stresses there are s0 times their slopes across the film, -2/Re and -2 cot(slope)/Re.
+        """
+        s0 = names.s0
+        wall, surface = edges.liquid
+        return (
+            wall.v,
+            wall.w,
+            surface.t + 2j / self.Re * s0,
+            surface.n + (2 * self.cot_slope / self.Re + self.We * names.k**2) * s0,
+            (names.rate + 1j) * s0 - surface.w,
+        )
+
+    def long_wave(self, k):
+        """sigma = -2 i k: waves of twice the surface speed, Yih (1963)."""
+        return -2j * k
+
+    @property
+    def cot_slope(self):
+        return cos(radians(self.slope_deg)) / sin(radians(self.slope_deg))
+
+
+def profile(s, Re):
+    return Profile(dz=1.0, U=2 * s - s**2, dU=2 - 2 * s, eta=1 / Re, beta=1 / Re)

@@ -1,0 +1,76 @@
+"""Roll waves in granular flow down an inclined plane (Forterre 2006; Cawthorn's thesis, section 4.0)."""
+
+from dataclasses import dataclass
+from math import atan, degrees, radians, sqrt, tan
+from typing import ClassVar
+
+from ..errors import ParameterError
+from ..layer import Layer, Profile
+from .base import Flow, parameter
+
+
+@dataclass(frozen=True)
+class RollWave(Flow):
+    """Down-slope perturbations exp(i k x + sigma t) of mu(I) flow, mu = (mu1 I0 + mu2 I)/(I0 + I), on a rough plane.
+
+    The base flow is U = (2/3)(1 - (1-z)^{3/2}); the friction law enters through mu = tan(slope) and
+    e0 = I mu'(I) = (mu2 - mu)(mu - mu1)/(mu2 - mu1), thesis (4.16).
+    """
+
+    name: ClassVar[str] = "rollwave"
+    title: ClassVar[str] = "roll waves in granular flow down an inclined plane"
+    scales: ClassVar[str] = ("length: depth h of the layer; velocity: I(tan slope) sqrt(phi g h cos slope) h/d; "
+                             "time: h over velocity; Fr2: velocity^2 / (g h cos slope), thesis (4.6); "
+                             "Forterre's Froude number, mean speed / sqrt(g h cos slope): 0.4 sqrt(Fr2)")
+    surfaces: ClassVar[tuple[str, ...]] = ("s0",)
+
+    slope_deg: float = parameter(28.0, 0, 90, meaning="inclination of the plane, degrees, between those of mu1 and mu2")
+    Fr2: float = parameter(4.0, 0, meaning="squared Froude number, thesis (4.6)")
+    mu1: float = parameter(tan(radians(20.9)), 0, meaning="friction at rest")
+    mu2: float = parameter(tan(radians(32.76)), 0, meaning="friction of rapid flow")
+
+    def __post_init__(self):
+        super().__post_init__()
+        if not self.mu1 < self.mu < self.mu2:
+            raise ParameterError(f"{self.name}: slope_deg must lie between atan(mu1) and atan(mu2), "
+                                 f"({degrees(atan(self.mu1)):g}, {degrees(atan(self.mu2)):g}): "
+                                 f"no steady flow elsewhere (got {self.slope_deg:g})")
+
+    def layers(self, names):
+        return (Layer("grains", lambda s: profile(s, self.mu, self.e0, self.Fr2)),)
+
+    def conditions(self, edges, names):
+        """No slip on the plane; no stress on the displaced surface, where the base shear stress is -mu s0."""
+        s0 = names.s0
+        wall, surface = edges.grains
+        return (
+            wall.v,
+            wall.w,
+            surface.t + 1j * self.mu * s0,
+            surface.n + s0,
+            (names.rate + 2j / 3) * s0 - surface.w,
+        )
+
+    def long_wave(self, k):
+        """sigma = -i k: waves of 5/2 of the mean speed."""
+        return -1j * k
+
+    @property
+    def mu(self):
+        return tan(radians(self.slope_deg))
+
+    @property
+    def e0(self):
+        return (self.mu2 - self.mu) * (self.mu - self.mu1) / (self.mu2 - self.mu1)
+
+    @property
+    def froude(self):
+        """Forterre's Froude number: mean speed over sqrt(g h cos slope)."""
+        return 0.4 * sqrt(self.Fr2)
+
+
+def profile(s, mu, e0, Fr2):
+    """Base state in zeta = sqrt(1 - z) = 1 - s: every coefficient of the equations is a polynomial."""
+    zeta = 1 - s
+    return Profile(dz=2 * zeta, rho=Fr2, U=2 * (1 - zeta**3) / 3, dU=zeta, eta=mu * zeta, beta=e0 * zeta,
+                   alpha=mu - e0 / 2)

@@ -1,0 +1,74 @@
+"""Two liquids between sliding plates: the instability due to viscosity stratification (Yih 1967)."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from ..layer import Layer, Profile
+from .base import Flow, parameter
+
+
+@dataclass(frozen=True)
+class TwoLayerCouette(Flow):
+    """Perturbations exp(i k x + sigma t) of two liquids sheared by the upper plate, -n <= z <= 0 and 0 <= z <= 1.
+
+    With viscosity ratio m and depth ratio n (lower over upper) the shear rates are 1/(m+n) below and
+    m/(m+n) above the interface, which moves at n/(m+n).
+    """
+
+    name: ClassVar[str] = "two_layer_couette"
+    title: ClassVar[str] = "two liquids in plane Couette flow"
+    scales: ClassVar[str] = ("length: depth of the upper liquid; velocity: of the upper plate, the lower one is at rest; "
+                             "Re: length * velocity / kinematic viscosity of the upper liquid; ratios: lower over upper; "
+                             "gravity: g * length / velocity^2; "
+                             "tension: surface tension / (density of the upper liquid * velocity^2 * length)")
+    surfaces: ClassVar[tuple[str, ...]] = ("s0",)
+
+    viscosity_ratio: float = parameter(2.0, 0, meaning="viscosity of the lower liquid over that of the upper")
+    depth_ratio: float = parameter(1.0, 0, meaning="depth of the lower liquid over that of the upper")
+    density_ratio: float = parameter(1.0, 0, closed=True, meaning="density of the lower liquid over that of the upper")
+    Re: float = parameter(10.0, 0, meaning="Reynolds number of the upper liquid and the plate speed")
+    gravity: float = parameter(0.0, 0, closed=True, meaning="g * depth / speed^2 of the upper liquid and plate")
+    tension: float = parameter(0.0, 0, closed=True, meaning="surface tension / (density * speed^2 * depth)")
+
+    def layers(self, names):
+        m, n = self.viscosity_ratio, self.depth_ratio
+        return (
+            Layer("lower", lambda s: profile(s, n, 0.0, 1 / (m + n), m / self.Re, self.density_ratio)),
+            Layer("upper", lambda s: profile(s, 1.0, self.interface_speed, m / (m + n), 1 / self.Re, 1.0)),
+        )
+
+    def conditions(self, edges, names):
+        """No slip; velocities and stresses meet on the displaced interface, which moves with the liquids.
+
+        The jump of the shear rate displaces the velocity, that of the density and surface tension the pressure.
+        """
+        m, n, s0 = self.viscosity_ratio, self.depth_ratio, names.s0
+        wall, below = edges.lower
+        above, plate = edges.upper
+        weight = (self.density_ratio - 1) * self.gravity
+        return (
+            wall.v,
+            wall.w,
+            above.v - below.v - 1j * (m - 1) / (m + n) * s0,
+            above.w - below.w,
+            above.t - below.t,
+            above.n - below.n - (weight + self.tension * names.k**2) * s0,
+            (names.rate + 1j * self.interface_speed) * s0 - below.w,
+            plate.v,
+            plate.w,
+        )
+
+    def long_wave(self, k):
+        """sigma = -i k (n/(m+n) + c0) with Yih's (1967) c0, relative to the interface."""
+        m, n = self.viscosity_ratio, self.depth_ratio
+        c0 = 2 * m * n**2 * (m - 1) * (n + 1) / ((m + n) * (m**2 + 4 * m * n**3 + 6 * m * n**2 + 4 * m * n + n**4))
+        return -1j * k * (self.interface_speed + c0)
+
+    @property
+    def interface_speed(self):
+        return self.depth_ratio / (self.viscosity_ratio + self.depth_ratio)
+
+
+def profile(s, depth, speed, shear_rate, viscosity, density):
+    """Linear shear above the speed at s = 0."""
+    return Profile(dz=depth, U=speed + shear_rate * depth * s, dU=shear_rate, eta=viscosity, beta=viscosity, rho=density)
