@@ -46,8 +46,13 @@ def coefficients(samples):
 
 @lru_cache(maxsize=4)
 def _transform(count):
-    """Matrix (count, count) from samples at the first-kind points to T-coefficients."""
-    matrix = C.chebvander(C.chebpts1(count), count - 1).T * (2 / count)
+    """Matrix (count, count) from samples at the first-kind points to T-coefficients.
+
+    T_m at the points is a cosine of a multiple of pi / (2 count), exact to rounding for every m, which
+    the three-term recurrence is not.
+    """
+    odd = 2 * np.arange(count)[::-1] + 1
+    matrix = np.cos(np.outer(np.arange(count), odd) % (4 * count) * (np.pi / (2 * count))) * (2 / count)
     matrix[0] /= 2
     return matrix
 

@@ -1,0 +1,19 @@
+"""One BLAS thread, and tests in an order of their own: a seed shown in the header, fixed by STABILITY_TEST_SEED."""
+
+import os
+import random
+import time
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+SEED = int(os.environ.get("STABILITY_TEST_SEED", time.time_ns() % 10**6))
+
+
+def pytest_report_header():
+    return f"order shuffled with STABILITY_TEST_SEED={SEED}"
+
+
+def pytest_collection_modifyitems(items):
+    """Shuffle within each file, so that module-wide fixtures are made once."""
+    generator = random.Random(SEED)
+    order = {name: generator.random() for name in sorted({item.nodeid for item in items})}
+    items.sort(key=lambda item: (item.nodeid.partition("::")[0], order[item.nodeid]))
