@@ -65,6 +65,7 @@ def shallow_coefficient(order: int) -> sp.Expr:
     return sp.factor(-here - (gradient.coeff(amplitude) if order == 0 else 0))
 
 
+@cache
 def shallow(order=3) -> Expansion:
     """R = -4/depth - i k depth^2 Re/30 + ... as a series in k."""
     terms = {sp.Integer(m): shallow_coefficient(m) * power_of_i(m) for m in range(int(order) + 1)}
@@ -114,6 +115,7 @@ def ratio_taylor(n: int) -> sp.Expr:
     return sp.powsimp(sp.expand(3 * (top - rest)))
 
 
+@cache
 def boundary_layer_coefficient(order: int) -> sp.Expr:
     """Coefficient of (i k)^{order/3} in R: only order = 1, 3, 5, ... differ from zero."""
     if order % 2 == 0:
@@ -123,6 +125,7 @@ def boundary_layer_coefficient(order: int) -> sp.Expr:
     return -ratio_taylor(n) * (-sp.I) ** n * Re ** sp.Rational(1 - n, 3)
 
 
+@cache
 def boundary_layer(terms=3) -> Expansion:
     """R = -(3^{1/3}/Gamma(2/3)) (i k Re)^{1/3} - 9 k/(2 pi sqrt 3) + ... as a series in k."""
     powers = [sp.Rational(2 * n + 1, 3) for n in range(terms + 1)]
@@ -162,6 +165,7 @@ def _short_wave_vorticity(n: int) -> sp.Expr:
     return polynomial - 2 * (total + (1 if n == 0 else 0))
 
 
+@cache
 def short_waves(terms=2) -> Expansion:
     """R = -2 k - i Re/(2 k) + ... in falling powers of k."""
     found = {sp.Integer(1 - 2 * n): short_wave_coefficient(n) * Re**n for n in range(terms)}

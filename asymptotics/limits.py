@@ -18,6 +18,7 @@ import numpy as np
 TOLERANCE = 0.05
 FEWEST = 4
 NOISE = 3.0  # a difference counts only if it exceeds this many times the error of the numerics
+BEND = 0.01  # relative departure of the difference from a pure power that is not blamed on the numerics
 
 
 class OrderMismatch(AssertionError):
@@ -75,7 +76,8 @@ def compare(numeric, series, k, expected: float, *, correction: float | None = N
     numeric, series   functions of an array k, or arrays of the shape of k; complex or real
     expected          power of the first term that the series leaves out
     correction        relative power of the term after that: fits the slope as p + (slope's drift) k^correction
-    error             error of the numerics, same shape: points whose difference does not stand out are left out
+    error             error of the numerics, same shape: points whose difference does not stand out from it
+                      are left out, the others weighted by it
     Raises TooFewPoints if fewer than four points remain.
     """
     k = np.sort(np.asarray(k, dtype=float))
@@ -86,10 +88,11 @@ def compare(numeric, series, k, expected: float, *, correction: float | None = N
     if heard.sum() < FEWEST:
         raise TooFewPoints(f"the difference between numerics and series exceeds {NOISE:g} times the numerics' error at "
                            f"{heard.sum()} of {len(k)} points, {FEWEST} are needed: take larger k")
-    k, numeric, series = k[heard], numeric[heard], series[heard]
-    difference = np.log(np.abs(numeric - series))
-    slope = np.diff(difference) / np.diff(np.log(k))
-    return Comparison(k, numeric, series, slope, _order(k, difference, correction), float(expected), tolerance)
+    k, numeric, series, floor = k[heard], numeric[heard], series[heard], floor[heard]
+    difference = np.abs(numeric - series)
+    slope = np.diff(np.log(difference)) / np.diff(np.log(k))
+    order = _order(k, difference, floor, correction)
+    return Comparison(k, numeric, series, slope, order, float(expected), tolerance)
 
 
 def assert_order(numeric, series, k, expected: float | None = None, **options) -> Comparison:
@@ -108,11 +111,13 @@ def assert_order(numeric, series, k, expected: float | None = None, **options) -
     return comparison
 
 
-def _order(k, log_difference, correction) -> float:
+def _order(k, difference, error, correction) -> float:
+    """Least-squares slope; a point counts less the nearer its difference is to the numerics' error."""
     columns = [np.ones_like(k), np.log(k)]
     if correction is not None:
         columns.append((k / k[-1]) ** correction)
-    fit = np.linalg.lstsq(np.column_stack(columns), log_difference, rcond=None)
+    weight = 1 / np.hypot(BEND, error / difference)
+    fit = np.linalg.lstsq(np.column_stack(columns) * weight[:, None], np.log(difference) * weight, rcond=None)
     return float(fit[0][1])
 
 

@@ -92,6 +92,7 @@ def _layer_hierarchy() -> Hierarchy:
     return hierarchy(_R_LAYER, 3)
 
 
+@cache
 def shallow(order=2) -> Expansion:
     """Fluid under a lid, k depth << 1: (4.84), and the coefficient A of (4.85).
 
@@ -106,6 +107,7 @@ def shallow(order=2) -> Expansion:
     return Expansion("dune", "shallow", terms, sp.Integer(int(order) + 1), parameters)
 
 
+@cache
 def boundary_layer(order=2) -> Expansion:
     """Unbounded fluid, k^2 << Re: (4.81), (4.82), a power 5/3 that vanishes, and the first corrections."""
     response = {symbol: fluid.boundary_layer_coefficient(m) for m, symbol in enumerate(_R_LAYER) if m % 2}
@@ -116,16 +118,19 @@ def boundary_layer(order=2) -> Expansion:
     return Expansion("dune", "boundary-layer", terms, following, dict.fromkeys(("shields", "mu1", "b", "Re")))
 
 
+@cache
 def leading_flux() -> sp.Expr:
     """a in sigma = i k a R + O(k^2): (2 shields/(3 b)) (shields^{3/2} - 3 shields^{1/2} + 2)."""
     return _named(sp.diff(_shallow_hierarchy().speed(0), _R_SHALLOW[0]), {})
 
 
+@cache
 def bed_damping() -> sp.Expr:
     """B in sigma = i k a R - B k^2 + ... where R -> 0: the bed on its own decays like -B k^2."""
     return _named(_shallow_hierarchy().speed(1).subs(dict.fromkeys(_R_SHALLOW, 0)), {})
 
 
+@cache
 def neutral_Re() -> sp.Expr:
     """Re on the curve A = 0 of the shallow regime, as a function of shields, depth, mu1, b: stable below it.
 
@@ -139,6 +144,7 @@ def neutral_Re() -> sp.Expr:
     return -rest / (leading_flux() * fluid.shallow_coefficient(1) / fluid.Re)
 
 
+@cache
 def small_Re(order=1) -> Expansion:
     """Unbounded fluid, Re -> 0 with k = kappa sqrt(Re): sigma = Re (i a kappa R(kappa, 1, oo) - B kappa^2) + ...
 
@@ -185,6 +191,7 @@ def small_Re_maximum(shields, mu1, digits: int = 15):
         return +found
 
 
+@cache
 def near_yield(order=2) -> Expansion:
     """shields = 1 + delta, delta -> 0 at fixed k: sigma = i k R(k, Re, depth) delta^2/(2 b) + ..."""
     coefficient = sp.I * wavenumber * fluid.WallResponse(wavenumber, fluid.Re, fluid.depth) / (2 * b)

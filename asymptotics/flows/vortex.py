@@ -77,11 +77,13 @@ def _loaded_surface() -> Hierarchy:
     return hierarchy(delta, *sp.symbols("root_top root_bottom", positive=True))
 
 
+@cache
 def long_wave_law(order=6) -> Expansion:
     """sigma = -2 k^2/(5 tan slope) + ... (4.25), in even powers of k."""
     return _even_expansion("long-wave", _free_surface(), order, {"slope_deg": None, "Fr2": None}, {})
 
 
+@cache
 def loaded_law(order=2) -> Expansion:
     """The same with pressure delta on the surface (4.26)-(4.30)."""
     roots = dict(zip(sp.symbols("root_top root_bottom", positive=True), (sp.sqrt(delta), sp.sqrt(1 + delta))))
