@@ -31,12 +31,15 @@ THESIS_DELTA = 0.01  # grain size over depth of the layer
 THESIS_DEPTH = 100.0  # depth of the fluid times k, where it stands for an unbounded fluid
 SEARCH = (1e-2, 100.0)  # default range of k for the fastest growing wavenumber
 
+INTERRUPTED = "interrupted"
+
 _RESIDUALS = (1e-5, 1e-6, 1e-7, 1e-8)  # tolerances of solve_bvp tried in turn
 _NODES = 20_000
+_STEP_NODES = 200  # a step that needs more than these and four times its mesh has a bad guess
 _START_NODES = 17
 _FIRST_STEP = 0.5  # in log of the parameter
 _SMALLEST_STEP = 2e-3
-_CHANGE = 0.3  # largest relative difference between predictor and corrector
+_CHANGE = 0.1  # largest relative difference between predictor and corrector
 _STEPS = 400
 _SAMPLES = 96
 _INSIDE = np.array([0.2, 0.7])
@@ -169,8 +172,17 @@ class Problem:
         return SimpleNamespace(k=self.k, rate=rate, **self.functions,
                                **dict(zip(self.flow.surfaces, surfaces, strict=False)))
 
+    def _regular(self, layer, s):
+        """M0 and M1 of a layer at the points s, (2, 4, 4, points); their limits where an edge gives 0/0."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            matrices = self._layer(layer, s)
+        open_ = ~np.all(np.isfinite(matrices), axis=(0, 1, 2))
+        if np.any(open_):
+            series = chebyshev.coefficients(self._layer(layer, chebyshev.points(_SAMPLES)).reshape(-1, _SAMPLES).T)
+            matrices[..., open_] = C.chebval(2 * s[open_] - 1, series).reshape(2, 4, 4, -1)
+        return matrices
+
     def _layer(self, layer, s):
-        """M0 and M1 of a layer at the points s, (2, 4, 4, points)."""
         base = layer.profile(s)
         zero, unit = np.zeros(4), np.eye(4)
 
@@ -194,7 +206,11 @@ class Problem:
         if layer.singular > 1 or np.max(np.abs(at_edge.reshape(2, 4, 4)[1])) > 1e-10:
             raise ParameterError(f"{self.flow.name}: solve_bvp takes one singular edge, at s = 0 of a layer")
         series[0] -= at_edge
-        return np.array([C.chebdiv(column, [0.5, 0.5])[0] for column in series.T]).T
+        quotients = [C.chebdiv(column, [0.5, 0.5])[0] for column in series.T]
+        remainder = np.zeros((max(map(len, quotients)), len(quotients)), complex)
+        for column, quotient in enumerate(quotients):
+            remainder[:len(quotient), column] = quotient
+        return remainder
 
     def _evaluate(self, s):
         matrices = np.zeros((2, self.size, self.size, len(s)), complex)
@@ -203,7 +219,7 @@ class Problem:
             if i in self._remainders:
                 matrices[:, block, block] = C.chebval(2 * s - 1, self._remainders[i]).reshape(2, 4, 4, -1)
             else:
-                matrices[:, block, block] = self._layer(layer, s)
+                matrices[:, block, block] = self._regular(layer, s)
         return matrices
 
     def matrices(self, s):
@@ -250,7 +266,7 @@ class _Solution:
         return _join(self.spline(s), self.problem.real)
 
 
-def _solve(problem, mesh, fields, parameters, residual, frozen=False):
+def _solve(problem, mesh, fields, parameters, residual, frozen=False, nodes=_NODES):
     """Solve for fields and parameters from a guess (complex, fields (size, nodes)); None where solve_bvp fails.
 
     With `frozen` the rate stays as given, and one condition is left out: the kinematic one, or the
@@ -261,7 +277,7 @@ def _solve(problem, mesh, fields, parameters, residual, frozen=False):
     with np.errstate(all="ignore"):
         found = solve_bvp(system.slopes, system.conditions, mesh, _part(fields, problem.real), guess,
                           S=system.singular, fun_jac=system.slopes_jacobian, bc_jac=system.conditions_jacobian,
-                          tol=residual, max_nodes=_NODES)
+                          tol=residual, max_nodes=nodes)
     if not found.success or not np.all(np.isfinite(found.y)):
         return None
     parameters = np.concatenate((parameters[:frozen], _join(found.p, problem.real) if len(guess) else []))
@@ -351,3 +367,221 @@ def _block(matrix, real):
 
 def _columns(index, count, real):
     return [index] if real else [index, count // 2 + index]
+
+
+@one_thread
+def continue_in_k(flow, k, *, tolerance=TOLERANCE, residual=None, guess=None, setting=None, report=None):
+    """Follow the surface mode of a flow through wavenumbers k by solve_bvp: a `Continuation`.
+
+    Each point is refined until its error is below `tolerance` |sigma|, or solved once with solve_bvp's
+    tolerance `residual`. `guess` is sigma at the smallest k, for flows without a long-wave limit. `setting` maps k to
+    the flow that is solved (`thesis_setting`). `report(done, total)` is called after each point.
+    """
+    setting = setting or (lambda k: flow)
+    wavenumbers = np.unique(np.asarray(k, dtype=float))
+    effort = _effort(tolerance, residual)
+    try:
+        walk = _Walk(lambda k: (setting(k), k), *_start(setting, wavenumbers[0], guess, effort[1][0]), effort)
+    except ModeLost as reason:
+        return Continuation((), dict.fromkeys(wavenumbers.tolist(), str(reason)))
+    return _walk_through(walk, wavenumbers.tolist(), report)
+
+
+@one_thread
+def continue_in(flow, name, values, k, *, tolerance=TOLERANCE, residual=None, report=None):
+    """Follow the surface mode at fixed k through a monotone sequence of positive values of a parameter.
+
+    The first point is reached from the long-wave limit. Arguments and result as for `continue_in_k`; `lost`
+    has the parameter's values as keys.
+    """
+    values = [float(value) for value in values]
+    effort = _effort(tolerance, residual)
+    first = replace(flow, **{name: values[0]})
+    walk = _Walk(lambda k: (first, k), *_start(lambda k: first, k, None, effort[1][0]), effort)
+    try:
+        walk.to(k)
+    except ModeLost as reason:
+        return Continuation((), dict.fromkeys(values, str(reason)))
+    walk.move(lambda value: (replace(flow, **{name: value}), k), values[0])
+    return _walk_through(walk, values, report)
+
+
+@dataclass(frozen=True)
+class BoundedMaximum:
+    """The largest growth rate along k and where; `error` bounds the absolute error of k."""
+
+    k: float
+    error: float
+    mode: Point
+
+    @property
+    def growth_rate(self):
+        return self.mode.growth_rate
+
+
+@one_thread
+def bounded_maximum(flow, search=SEARCH, *, tolerance=TOLERANCE, residual=None, setting=None):
+    """Return the `BoundedMaximum` of the first maximum of growth met along k, by bounded minimisation.
+
+    What the thesis does with fminbnd: values only, so that k is known to the square root of the accuracy
+    of sigma. Raises NotResolved if growth rises to no maximum within `search`.
+    """
+    from scipy.optimize import minimize_scalar
+
+    setting = setting or (lambda k: flow)
+    effort = _effort(tolerance, residual)
+    walk = _Walk(lambda k: (setting(k), k), *_start(setting, search[0], None, effort[1][0]), effort)
+    wavenumbers = np.geomspace(*search, int(log(search[1] / search[0]) / _BRACKET_STEP) + 1)
+    growth = []
+    for k in wavenumbers:
+        growth.append(walk.to(float(k)).sigma.real)
+        if len(growth) > 2 and growth[-2] > max(0, growth[-3], growth[-1]):
+            break
+    else:
+        raise NotResolved(f"{flow}: growth has no positive maximum for k in [{search[0]:g}, {search[1]:g}]")
+    bracket = wavenumbers[len(growth) - 3], wavenumbers[len(growth) - 1]
+    found = minimize_scalar(lambda k: -walk.to(float(k)).sigma.real, bounds=bracket, method="bounded",
+                            options={"xatol": _K_ACCURACY * bracket[0]})
+    best = walk.point(float(found.x))
+    a, middle, c = (growth[i] for i in (-3, -2, -1))
+    curvature = abs(a - 2 * middle + c) / (log(bracket[1] / bracket[0]) / 2) ** 2
+    width = (2 * max(best.error, 1e-16 * abs(best.sigma)) / curvature) ** 0.5
+    return BoundedMaximum(best.k, float(best.k * (width + _K_ACCURACY)), best)
+
+
+def _effort(tolerance, residual):
+    """Accepted relative error of sigma, and the tolerances of solve_bvp to try for it."""
+    return (np.inf, (residual,)) if residual else (tolerance, _RESIDUALS)
+
+
+def _start(setting, k, guess, residual):
+    """First solution and its k: at a k so small that the long-wave limit holds, or at the guess."""
+    for _ in range(12):
+        flow = setting(k)
+        sigma = flow.long_wave(np.array([k]))[0] if guess is None else guess
+        found = _cold(flow, k, sigma, residual)
+        if found and (guess is not None or abs(found.problem.width * found.rate / sigma - 1) < _LONG_WAVE):
+            return found, k
+        if guess is not None:
+            break
+        k = k / 4
+    raise ModeLost(f"{setting(k)}: solve_bvp finds no mode near the "
+                   f"{'long-wave limit' if guess is None else 'guess'} at k = {k:.3g}")
+
+
+def _cold(flow, k, sigma, residual):
+    """Solve with the rate held at the guess for the fields, then for all."""
+    problem = Problem(flow, k)
+    mesh = np.linspace(0, 1, _START_NODES)
+    parameters = np.zeros(max(1, len(flow.surfaces)), complex)
+    parameters[0] = sigma / problem.width
+    rough = _solve(problem, mesh, np.zeros((problem.size, len(mesh)), complex), parameters, residual, frozen=True)
+    return rough and _solve(problem, rough.mesh, rough.fields(rough.mesh), rough.parameters, residual)
+
+
+def _walk_through(walk, values, report):
+    points, lost = [], {}
+    try:
+        for value in values:
+            points.append(walk.point(value))
+            if report:
+                report(len(points), len(values))
+    except ModeLost as reason:
+        lost = dict.fromkeys(values[len(points):], str(reason))
+    except KeyboardInterrupt:
+        lost = dict.fromkeys(values[len(points):], INTERRUPTED)
+    return Continuation(tuple(points), lost)
+
+
+class _Walk:
+    """A walk along k or a parameter: `family` maps its value to (flow, k)."""
+
+    def __init__(self, family, start, value, effort):
+        self.tolerance, self.residuals = effort
+        self.step = _FIRST_STEP
+        self.now = start
+        self.move(family, value)
+
+    def move(self, family, value):
+        """Go on along another parameter, which has this value now."""
+        self.family, self.value, self.before = family, value, None
+
+    @property
+    def sigma(self):
+        return self.now.problem.width * self.now.rate
+
+    def to(self, value):
+        """Reach the value with solve_bvp's coarsest tolerance, in steps short enough for the predictor."""
+        for _ in range(_STEPS):
+            gap = log(value / self.value)
+            if gap == 0:
+                return self
+            self._advance(value if abs(gap) <= self.step else self.value * exp(np.sign(gap) * self.step))
+        raise self._lost(f"{_STEPS} steps did not reach {value:g}")
+
+    def point(self, value):
+        """Reach the value, then tighten solve_bvp's tolerance until halving the mesh moves sigma little enough."""
+        self.to(value)
+        problem, coarse = self.now.problem, self.now
+        for i, residual in enumerate(self.residuals):
+            if i:
+                coarse = _solve(problem, coarse.mesh, coarse.fields(coarse.mesh), coarse.parameters, residual)
+            mesh = coarse and _halved(coarse.mesh)
+            fine = coarse and _solve(problem, mesh, coarse.fields(mesh), coarse.parameters, residual)
+            if not fine:
+                raise self._lost(f"solve_bvp fails at tolerance {residual:g}")
+            error = abs(fine.rate - coarse.rate)
+            if error <= self.tolerance * abs(fine.rate):
+                break
+            coarse = fine
+        status = "resolved" if error <= self.tolerance * abs(fine.rate) else \
+            f"error {problem.width * error:.1e} exceeds tolerance with {len(fine.mesh)} nodes"
+        sigma = problem.width * fine.rate
+        return Point(problem.flow, problem.k, complex(sigma), float(problem.width * error), len(fine.mesh), status)
+
+    def _advance(self, value):
+        length = abs(log(value / self.value))
+        problem = Problem(*self.family(value))
+        mesh = _thinned(self.now, self.residuals[0])
+        fields, parameters = self._predict(value, mesh)
+        found = _solve(problem, mesh, fields, parameters, self.residuals[0], nodes=_STEP_NODES + 4 * len(mesh))
+        change = self._change(found, mesh, fields, parameters) if found else np.inf
+        if change < _CHANGE:
+            self.before, self.now, self.value = (self.value, self.now), found, value
+            self.step = length * min(2.0, max(0.7, (0.5 * _CHANGE / (change + 1e-6)) ** 0.5))
+            return
+        self.step = length / 3
+        if self.step < _SMALLEST_STEP:
+            raise self._lost("solve_bvp fails at the next step" if not found else "it finds another mode at the next step")
+
+    def _predict(self, value, mesh):
+        """Fields and parameters extrapolated in the logarithm of the value."""
+        fields, parameters = self.now.fields(mesh), self.now.parameters
+        if self.before is None:
+            return fields, parameters
+        old_value, old = self.before
+        ratio = log(value / self.value) / log(self.value / old_value)
+        return (fields + ratio * (fields - old.fields(mesh)),
+                parameters + ratio * (parameters - old.parameters))
+
+    def _change(self, found, mesh, fields, parameters):
+        """Largest relative difference between what was predicted and what was found."""
+        now = found.fields(mesh)
+        moved = np.linalg.norm(now - fields, axis=1) / np.linalg.norm(now, axis=1).clip(1e-12 * np.linalg.norm(now))
+        return max(abs(found.rate - parameters[0]) / abs(found.rate), np.max(moved))
+
+    def _lost(self, why):
+        flow, k = self.now.problem.flow, self.now.problem.k
+        return ModeLost(f"{flow}: bvp gives up after k = {k:.6g}, sigma = {self.sigma:.6g}: {why}")
+
+
+def _halved(mesh):
+    return np.sort(np.concatenate((mesh, (mesh[1:] + mesh[:-1]) / 2)))
+
+
+def _thinned(solution, residual):
+    """The mesh without every second node, where the residual allows intervals twice as long."""
+    mesh, size = solution.mesh, solution.residuals
+    inner = np.arange(1, len(mesh) - 1, 2)
+    idle = inner[np.maximum(size[inner - 1], size[inner]) < residual / 50]
+    return mesh if len(mesh) - len(idle) < _START_NODES else np.delete(mesh, idle)
