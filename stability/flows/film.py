@@ -23,7 +23,7 @@ class Film(Flow):
     surfaces: ClassVar[tuple[str, ...]] = ("s0",)
 
     Re: float = parameter(10.0, 0, meaning="Reynolds number of depth and surface speed")
-    slope_deg: float = parameter(30.0, 0, 180, meaning="inclination of the plane, degrees; beyond 90 the film hangs from it")
+    slope_deg: float = parameter(30.0, 0, 180, meaning="inclination of the plane, degrees; beyond 90 the film hangs")
     We: float = parameter(0.0, 0, closed=True, meaning="surface tension / (density * surface speed^2 * depth)")
 
     def layers(self, names):

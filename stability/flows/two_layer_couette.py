@@ -17,9 +17,9 @@ class TwoLayerCouette(Flow):
 
     name: ClassVar[str] = "two_layer_couette"
     title: ClassVar[str] = "two liquids in plane Couette flow"
-    scales: ClassVar[str] = ("length: depth of the upper liquid; velocity: of the upper plate, the lower one is at rest; "
-                             "Re: length * velocity / kinematic viscosity of the upper liquid; ratios: lower over upper; "
-                             "gravity: g * length / velocity^2; "
+    scales: ClassVar[str] = ("length: depth of the upper liquid; velocity: of the upper plate, the lower is at rest; "
+                             "Re: length * velocity / kinematic viscosity of the upper liquid; "
+                             "ratios: lower liquid over upper; gravity: g * length / velocity^2; "
                              "tension: surface tension / (density of the upper liquid * velocity^2 * length)")
     surfaces: ClassVar[tuple[str, ...]] = ("s0",)
 
@@ -71,4 +71,5 @@ class TwoLayerCouette(Flow):
 
 def profile(s, depth, speed, shear_rate, viscosity, density):
     """Linear shear above the speed at s = 0."""
-    return Profile(dz=depth, U=speed + shear_rate * depth * s, dU=shear_rate, eta=viscosity, beta=viscosity, rho=density)
+    U = speed + shear_rate * depth * s
+    return Profile(dz=depth, U=U, dU=shear_rate, eta=viscosity, beta=viscosity, rho=density)
