@@ -26,6 +26,9 @@ def main(argv=None):
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 141
+    except OSError as reason:  # output files report their own; this is the stream
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return _fail(f"cannot write to standard output: {reason.strerror}", 2)
     except KeyboardInterrupt:
         return _fail("interrupted", 130)
 

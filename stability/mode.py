@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from scipy.linalg import lapack
 
-from .errors import ModeLost, NotResolved
+from .errors import ModeLost, NotResolved, ParameterError
 from .pencil import Pencil
 from .system import System
 
@@ -155,6 +155,15 @@ class Solver:
         return Mode(self.flow, float(k), complex(sigma), float(error), complex(slope), degree, status, float(truncation),
                     float(rounding), eigen.rate, eigen.slope, eigen.x, eigen.y,
                     eigen.bx, eigen.by)
+
+
+def check_wavenumbers(k):
+    """Return k as a flat float array (points,), or raise a ParameterError."""
+    wavenumbers = np.atleast_1d(np.asarray(k, dtype=float)).ravel()
+    wrong = wavenumbers[~((wavenumbers > 0) & np.isfinite(wavenumbers))]
+    if len(wrong):
+        raise ParameterError(f"k must be positive and finite (got {wrong[0]:g})")
+    return wavenumbers
 
 
 def require(mode):

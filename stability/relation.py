@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from .errors import ModeLost, ParameterError
-from .mode import DEGREES, TOLERANCE, Solver, require
+from .mode import DEGREES, TOLERANCE, Solver, check_wavenumbers, require
 from .spectra import leading_modes
 from .threads import one_thread
 from .tracking import follow, surface_mode
@@ -82,15 +82,6 @@ def dispersion(flow, k, mode="surface", *, tolerance=TOLERANCE, max_degree=DEGRE
             require(point)
     return DispersionRelation(flow, mode, tuple(found[value] for value in wavenumbers.tolist() if value in found), lost,
                               tuple(collisions))
-
-
-def check_wavenumbers(k):
-    """Return k as a flat float array (points,), or raise a ParameterError."""
-    wavenumbers = np.atleast_1d(np.asarray(k, dtype=float)).ravel()
-    wrong = wavenumbers[~((wavenumbers > 0) & np.isfinite(wavenumbers))]
-    if len(wrong):
-        raise ParameterError(f"k must be positive and finite (got {wrong[0]:g})")
-    return wavenumbers
 
 
 def _surface(solver, wavenumbers):

@@ -3,7 +3,8 @@
 Only the momentum and kinematic rows of B are non-zero. With B = E B_r (E picks those rows) and
 G = B_r (A - shift B)^{-1} E, the finite eigenvalues are rate = shift + 1/theta for the non-zero
 eigenvalues theta of G. The infinite ones, defective in the pencil because pressure only enforces
-continuity, become semisimple zeros of G: a wide gap separates them, and nothing is filtered by size.
+continuity, become semisimple zeros of G. How many are finite follows from the structure alone, so that
+nothing is filtered by size.
 """
 
 from dataclasses import dataclass
@@ -12,11 +13,13 @@ from typing import Any
 import numpy as np
 
 from .errors import ModeLost
-from .mode import DEGREES, TOLERANCE, Solver, require
+from .mode import DEGREES, TOLERANCE, Solver, check_wavenumbers, require
+from .pencil import Weights
 from .threads import one_thread
 
 _SHIFT = 0.01 - 0.013j  # tried when the pencil is singular at rate 0
-_FLOOR = 1e-12  # zeros of G lie below this fraction of the largest theta (measured: below 1e-13)
+_SINGULAR = 1e15  # condition number above which rate 0 is taken for an eigenvalue
+_SMALL = 10  # degree of the pencil whose finite eigenvalues are counted
 
 
 @dataclass(frozen=True)
@@ -38,27 +41,35 @@ class Spectrum:
         return np.array([mode.error for mode in self.modes])
 
 
-def finite_rates(pencil, weights):
-    """Return the finite eigenvalues of A - rate B, all of them, by decreasing real part."""
-    a, b = pencil.pair(weights)
-    rows = np.flatnonzero(np.any(b, axis=1))
-    shift = 0.0
-    if np.linalg.cond(a, 1) > 1e15:
-        shift = _SHIFT
-    columns = np.zeros((len(a), len(rows)))
-    columns[rows, np.arange(len(rows))] = 1
-    theta = np.linalg.eigvals(b[rows] @ np.linalg.solve(a - shift * b, columns))
-    theta = theta[np.argsort(-np.abs(theta))]
-    theta = theta[: _finite_count(np.abs(theta))]
-    rates = shift + 1 / theta
+def finite_rates(solver, degree, symbols):
+    """Return the finite eigenvalues of the pencil of this degree, all of them, by decreasing real part."""
+    pencil = solver.pencil(degree)
+    theta, shift = _theta(pencil, pencil.weights(symbols))
+    rates = shift + 1 / theta[: _finite_count(solver, degree)]
     return rates[np.argsort(-rates.real)]
 
 
-def _finite_count(sizes):
-    """Index of the widest gap in decreasing |theta|, looked for where zeros can be."""
-    ratios = sizes[1:] / np.maximum(sizes[:-1], np.finfo(float).tiny)
-    ratios[sizes[1:] > _FLOOR * sizes[0]] = 1
-    return int(np.argmin(ratios)) + 1 if len(ratios) and ratios.min() < 1e-3 else len(sizes)
+def _theta(pencil, weights):
+    """Eigenvalues of G by decreasing size, and the shift."""
+    a, b = pencil.pair(weights)
+    rows = np.flatnonzero(np.any(b, axis=1))
+    columns = np.zeros((len(a), len(rows)))
+    columns[rows, np.arange(len(rows))] = 1
+    shift = _SHIFT if np.linalg.cond(a, 1) > _SINGULAR else 0.0
+    theta = np.linalg.eigvals(b[rows] @ np.linalg.solve(a - shift * b, columns))
+    return theta[np.argsort(-np.abs(theta))], shift
+
+
+def _finite_count(solver, degree):
+    """How many eigenvalues are finite: one per degree for every layer that carries the rate, plus a constant.
+
+    The constant (conditions, surfaces) is read off the gap of the smallest pencil with all symbols 1.
+    """
+    small = solver.pencil(_SMALL)
+    ones = np.ones(len(small.parts))
+    sizes = np.abs(_theta(small, Weights(ones, ones, ones))[0])
+    count = int(np.argmin(sizes[1:] / np.maximum(sizes[:-1], np.finfo(float).tiny))) + 1
+    return count + (degree - _SMALL) * solver.assembly.system.dynamic_layers
 
 
 @one_thread
@@ -68,6 +79,7 @@ def spectrum(flow, k, modes=10, *, tolerance=TOLERANCE, max_degree=DEGREES[-1], 
     The degree of the dense problem is raised until those modes no longer move. Raises NotResolved if
     one of them is not resolved within `max_degree`; with strict=False its status says so instead.
     """
+    check_wavenumbers(k)
     solver = Solver(flow, tolerance, max_degree)
     found = leading_modes(solver, float(k), modes)
     if strict:
@@ -93,8 +105,7 @@ def _converged_rates(solver, k, count):
     """Finite rates at the first degree at which the leading `count` agree with the degree before."""
     previous = None
     for degree in solver.degrees[3:] or solver.degrees:
-        pencil = solver.pencil(degree)
-        rates = finite_rates(pencil, pencil.weights(solver.symbols(k)))
+        rates = finite_rates(solver, degree, solver.symbols(k))
         if previous is not None:
             lead = rates[:count]
             drift = np.abs(lead[:, None] - previous).min(axis=1)

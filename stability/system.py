@@ -39,6 +39,7 @@ class System:
         self.equations = tuple(equation for layer in layers for equation in self._equations(layer, names, flow.order))
         edges = SimpleNamespace(**{layer.name: tuple(_edge(layer, end) for end in (0, 1)) for layer in layers})
         self.conditions = tuple(self._terms(form) for form in flow.conditions(edges, names))
+        self.dynamic_layers = sum(not layer.steady for layer in layers)
         _check_count(flow, layers, len(self.conditions))
 
     def __eq__(self, other):

@@ -183,12 +183,25 @@ class _Walk:
             return False
         if abs(mode.rate - guess) > 0.5 * abs(guess - middle):
             return False
-        sigma = self.solver.width(ahead) * middle
-        self.collisions.append(Collision(ahead, sigma, "real" if now.rate.imag else "pair"))
+        self.collisions.append(self._pin(now if now.rate.imag else mode, "real" if now.rate.imag else "pair"))
         self._accept(mode)
         self.before = None
         self.step = abs(log(beyond / now.k))
         return True
+
+
+    def _pin(self, pair, becomes):
+        """Place the collision by Newton on Im(rate)^2 = 0, from the complex side, ever nearer to it."""
+        for nearness in (1e-3, 1e-5):
+            k = pair.k - pair.rate.imag / (2 * pair.rate_slope.imag)
+            near = k + copysign(nearness * k, pair.k - k)
+            if abs(near - k) < abs(pair.k - k):
+                shrink = ((near - k) / (pair.k - k)) ** 0.5
+                middle = pair.rate.real + (k - pair.k) * pair.rate_slope.real
+                pair = self.solver.solve(near, complex(middle, shrink * pair.rate.imag), (pair.degree, pair.x, pair.y))
+        k = pair.k - pair.rate.imag / (2 * pair.rate_slope.imag)
+        rate = pair.rate.real + (k - pair.k) * pair.rate_slope.real
+        return Collision(k, float(self.solver.width(k) * rate), becomes)
 
 
 def _extrapolate(now, before, ratio):

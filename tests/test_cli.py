@@ -1,0 +1,201 @@
+"""The command line as a user meets it: output, files, exit status, and one clear line for bad input."""
+
+import csv
+import io
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from stability import __version__, dispersion, flows
+from stability.cli import main
+
+FULL = "/dev/full"
+
+
+def run(capsys, *arguments):
+    status = main(list(arguments))
+    captured = capsys.readouterr()
+    return status, captured.out, captured.err
+
+
+def test_dispersion_as_json(capsys):
+    status, out, err = run(capsys, "dispersion", "vortex", "--k", "0.5,2", "--Fr2", "0.2", "--json")
+    result = json.loads(out)
+    assert (status, err) == (0, "")
+    assert {key: result[key] for key in ("flow", "parameters", "method", "version")} == {
+        "flow": "vortex", "parameters": {"slope_deg": 30.0, "Fr2": 0.2}, "method": "collocation", "version": __version__}
+    expected = dispersion(flows.Vortex(Fr2=0.2), [0.5, 2.0])
+    assert [row["growth_rate"] for row in result["rows"]] == expected.growth_rate.tolist()  # floats round-trip
+    assert list(result["rows"][0]) == ["k", "growth_rate", "phase_speed", "error", "degree", "status"]
+
+
+def test_csv_carries_the_parameters_in_comments(capsys):
+    _, out, _ = run(capsys, "dispersion", "dune", "--k", "1:2:3:lin", "--depth", "5", "--csv")
+    comments = [line for line in out.splitlines() if line.startswith("#")]
+    assert "# flow: dune" in comments
+    assert "# depth: 5.0" in comments
+    rows = list(csv.DictReader(io.StringIO("\n".join(line for line in out.splitlines() if line not in comments))))
+    assert [row["k"] for row in rows] == ["1.0", "1.5", "2.0"]
+    assert {row["status"] for row in rows} == {"resolved"}
+
+
+def test_tables_are_aligned(capsys):
+    _, out, _ = run(capsys, "dispersion", "dune", "--k", "1,10")
+    assert out.splitlines()[0].split() == ["k", "growth_rate", "phase_speed", "error", "degree", "status"]
+    assert len({line.index("resolved") for line in out.splitlines()[1:]}) == 1
+
+
+def test_an_infinite_depth_is_a_string_in_json(capsys):
+    _, out, _ = run(capsys, "spectrum", "dune", "--k", "1", "--modes", "1", "--json")
+    assert json.loads(out, parse_constant=pytest.fail)["parameters"]["depth"] == "inf"
+
+
+def test_kmax_lists_all_maxima(capsys):
+    status, out, _ = run(capsys, "kmax", "dune", "--shields", "3", "--over", "Re=0.01,10", "--json")
+    rows = json.loads(out)["rows"]
+    assert status == 0
+    assert [row["Re"] for row in rows] == [0.01, 10.0]
+    assert len(rows[0]["maxima"]) == 2
+    assert rows[0]["maxima"][0] == [rows[0]["k_max"], rows[0]["growth_rate"]]
+
+
+def test_kmax_of_a_stable_flow_says_so(capsys):
+    status, out, err = run(capsys, "kmax", "vortex", "--over", "slope-deg=20:40:2", "--json")
+    assert status == 3
+    assert [row["k_max"] for row in json.loads(out)["rows"]] == [None, None]
+    assert "2 of 2 rows are not resolved" in err
+
+
+def test_collisions_are_reported(capsys):
+    status, _, err = run(capsys, "dispersion", "vortex", "--Fr2", "5", "--k", "0.1:10:5")
+    assert status == 0
+    assert err.count("two modes collide at k = ") == 2
+
+
+def test_flows_lists_parameters_ranges_and_scales(capsys):
+    _, out, _ = run(capsys, "flows", "dune")
+    assert "--shields  2.0" in out
+    assert "(1, inf)" in out
+    assert "length: grain diameter d" in out
+
+
+BAD = [
+    (("flows", "vrtex"), "unknown flow 'vrtex' (did you mean 'vortex'?)"),
+    (("dispersion", "vrtex", "--k", "1"), "unknown flow 'vrtex'"),
+    (("dispersion", "dune", "--Rex", "3", "--k", "1"), "unknown option '--Rex'"),
+    (("dispersion", "vortex", "--shields", "2", "--k", "1"), "vortex has no parameter shields; it has Fr2, slope_deg"),
+    (("dispersion", "dune", "--shields", "0.8", "--k", "1"),
+     "shields must lie in (1, inf): at or below 1 the bed does not yield (got 0.8)"),
+    (("dispersion", "dune", "--Re", "-1", "--k", "1"), "Re must lie in (0, inf) (got -1)"),
+    (("dispersion", "dune", "--Re", "nan", "--k", "1"), "Re must lie in (0, inf) (got nan)"),
+    (("dispersion", "dune", "--Re", "many", "--k", "1"), "Re must be a number in (0, inf) (got 'many')"),
+    (("dispersion", "dune", "--fluid", "water", "--k", "1"), "fluid must be one of closed-form, layer (got 'water')"),
+    (("dispersion", "vortex", "--slope-deg", "95", "--k", "1"), "slope_deg must lie in (0, 90) (got 95)"),
+    (("dispersion", "dune", "--k", "0"), "--k: values must be positive (got 0)"),
+    (("dispersion", "dune", "--k", "1:0:5"), "--k: a range must rise, a < b (got '1:0:5')"),
+    (("dispersion", "dune", "--k", "0:1:5"), "add :lin for equal steps"),
+    (("dispersion", "dune", "--k", "1:2:1"), "number of points must be an integer from 2"),
+    (("dispersion", "dune", "--k", "1:2:3:log"), "a range is a:b:n or a:b:n:lin"),
+    (("dispersion", "dune", "--k", "abc"), "--k: not a finite number: 'abc'"),
+    (("dispersion", "dune", "--k", "nan"), "--k: not a finite number: 'nan'"),
+    (("dispersion", "dune"), "required: --k"),
+    (("dispersion", "dune", "--k", "1", "--mode", "fast"), "--mode: must be one of surface, most-unstable"),
+    (("dispersion", "dune", "--k", "1", "--tolerance", "2"), "--tolerance: must lie in [1e-15, 0.1] (got 2)"),
+    (("dispersion", "dune", "--k", "1", "--max-degree", "3"), "--max-degree: must be an integer from 8"),
+    (("spectrum", "dune", "--k", "1", "--modes", "0"), "--modes: must be an integer from 1"),
+    (("kmax", "dune", "--over", "Rex=1:2:3"), "--over: dune has no parameter 'Rex' (did you mean 'Re'?)"),
+    (("kmax", "dune", "--over", "shields=0.5:2:3"), "shields must lie in (1, inf)"),
+    (("dispersion", "dune", "--k", "1", "--plot", "x.gif"), "--plot: the file must end in .png, .pdf, .svg"),
+    (("dispersion", "dune", "--k", "1", "-o", "/nowhere/x.csv"), "-o: cannot write '/nowhere/x.csv'"),
+    (("dispersion", "dune", "--k", "1", "--plot", "/nowhere/x.png"), "--plot: cannot write '/nowhere/x.png'"),
+    ((), "required: VERB"),
+    (("dance",), "invalid choice: 'dance'"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "line"), BAD, ids=[" ".join(arguments) or "nothing" for arguments, _ in BAD])
+def test_bad_input_gets_one_clear_line(capsys, arguments, line):
+    status, out, err = run(capsys, *arguments)
+    assert (status, out) == (2, "")
+    assert err.count("\n") == 1
+    assert line in err
+
+
+def test_unresolved_rows_are_marked_and_the_exit_status_tells(capsys):
+    status, out, err = run(capsys, "dispersion", "dune", "--shields", "3", "--k", "0.01,8", "--max-degree", "14", "--json")
+    assert status == 3
+    assert [row["status"] == "resolved" for row in json.loads(out)["rows"]] == [True, False]
+    assert "1 of 2 rows are not resolved" in err
+
+
+def test_files_are_written_whole(tmp_path, capsys):
+    target, picture = tmp_path / "a b é.json", tmp_path / "p.svg"
+    status, out, _ = run(capsys, "dispersion", "vortex", "--k", "1:2:3", "--json", "-o", str(target), "--plot", str(picture))
+    assert (status, out) == (0, "")
+    assert len(json.loads(target.read_text())["rows"]) == 3
+    assert picture.read_text().rstrip().endswith("</svg>")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a b é.json", "p.svg"]
+
+
+@pytest.mark.parametrize("ending", ["png", "pdf", "svg"])
+@pytest.mark.parametrize("question", [("dispersion", "dune", "--k", "0.1:3:5"), ("spectrum", "vortex", "--k", "1,2"),
+                                      ("kmax", "dune", "--over", "Re=1:100:3")])
+def test_every_verb_draws(tmp_path, capsys, question, ending):
+    picture = tmp_path / f"figure.{ending}"
+    assert run(capsys, *question, "--plot", str(picture), "--quiet")[0] == 0
+    assert picture.stat().st_size > 4000
+
+
+def test_an_interrupted_run_leaves_the_old_file(tmp_path, capsys, monkeypatch):
+    target = tmp_path / "kept.csv"
+    target.write_text("old")
+
+    def interrupt(*arguments, **options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("stability.verbs.dispersion.dispersion", interrupt)
+    status, _, err = run(capsys, "dispersion", "vortex", "--k", "1", "-o", str(target))
+    assert (status, err) == (130, "stability: interrupted\n")
+    assert [path.read_text() for path in tmp_path.iterdir()] == ["old"]
+
+
+def stability(*arguments, **options):
+    return subprocess.Popen([sys.executable, "-m", "stability", *arguments], stderr=subprocess.PIPE, text=True, **options)
+
+
+def test_a_closed_pipe_is_quiet():
+    reader, writer = os.pipe()
+    os.close(reader)
+    process = stability("flows", stdout=writer)
+    os.close(writer)
+    assert process.communicate()[1] == ""
+    assert process.returncode == 141
+
+
+@pytest.mark.skipif(not os.path.exists(FULL), reason="needs /dev/full")
+def test_a_full_disk_is_one_line():
+    with open(FULL, "w") as full:
+        process = stability("dispersion", "vortex", "--k", "1", stdout=full)
+        err = process.communicate()[1]
+    assert process.returncode == 2
+    assert err == "stability: cannot write to standard output: No space left on device\n"
+
+
+def test_ctrl_c_stops_a_sweep_at_once():
+    process = stability("kmax", "dune", "--over", "shields=1.1:4:2000", stdout=subprocess.PIPE)
+    time.sleep(3)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=20)
+    assert (process.returncode, out, err) == (130, "", "stability: interrupted\n")
+
+
+def test_light_verbs_import_no_heavy_packages():
+    code = ("import sys; from stability.cli import main; main(['dispersion', 'vortex', '--k', '1', '--quiet']); "
+            "print(sorted({'sympy', 'matplotlib', 'scipy.special', 'scipy.integrate', 'scipy.sparse'} & set(sys.modules)))")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.endswith("[]\n")

@@ -1,0 +1,86 @@
+"""Following a mode: the same mode from either side, collisions met and named, jumps refused."""
+
+import numpy as np
+import pytest
+import references
+
+from stability import ModeLost, dispersion, flows
+from stability.mode import Solver
+from stability.tracking import follow, surface_mode
+
+
+def test_forwards_and_backwards_meet():
+    solver = Solver(flows.Dune(shields=3.0))
+    k = np.geomspace(1e-3, 8, 40)
+    forwards = follow(solver, surface_mode(solver, k[0]), k)
+    backwards = follow(solver, forwards.modes[-1], k[::-1])
+    there = np.array([mode.sigma for mode in forwards.modes])
+    back = np.array([mode.sigma for mode in backwards.modes])[::-1]
+    bars = np.array([mode.error for mode in forwards.modes])
+    assert np.all(np.abs(there - back) <= 2 * bars)
+
+
+def test_the_mode_does_not_depend_on_the_wavenumbers_on_the_way():
+    far = dispersion(flows.Dune(shields=2.5, Re=300.0), 6.0)
+    fine = dispersion(flows.Dune(shields=2.5, Re=300.0), np.geomspace(1e-3, 6.0, 300))
+    assert abs(far.sigma[0] - fine.sigma[-1]) <= far.error[0] + fine.error[-1]
+
+
+def test_the_surface_mode_obeys_its_limit_in_value_and_slope():
+    """At k = 3.986 a damped mode lies by chance within 2 % of the long-wave law of this flow."""
+    flow = flows.Vortex(slope_deg=15.494955741733616, Fr2=2.169558244519395)
+    solver = Solver(flow)
+    chance = solver.solve(3.986, flow.long_wave(3.986) / solver.width(3.986))
+    assert abs(chance.sigma / flow.long_wave(3.986) - 1) < 0.03
+    mode = surface_mode(solver, 3.986)
+    assert mode.k < 0.3
+    assert abs(dispersion(flow, 3.986).sigma[0]) < 0.2 * abs(chance.sigma)
+
+
+def test_a_collision_of_real_modes_is_found_where_the_reference_has_it():
+    """Below it the reference finds two real roots, above it a complex pair."""
+    flow = flows.Vortex(Fr2=5.0)
+    relation = dispersion(flow, [0.1, 1.0, 8.0])
+    first, second = relation.collisions
+    assert (first.becomes, second.becomes) == ("pair", "real")
+    assert "become a complex pair" in str(first)
+    for collision, step in ((first, 1e-6), (second, -1e-6)):
+        paired = references.vortex(flow.slope_deg, flow.Fr2, collision.k * (1 + step),
+                                   complex(collision.sigma, 1e-3 * abs(collision.sigma)), radius=0.5)
+        real = references.vortex(flow.slope_deg, flow.Fr2, collision.k * (1 - step), 1.002 * collision.sigma, radius=0.5)
+        assert abs(paired.imag) > 1e-5
+        assert real.imag == 0
+    assert relation.sigma[0].imag == 0 == relation.sigma[2].imag
+    assert relation.phase_speed[1] > 0  # of the pair, the one that travels downstream
+
+
+def test_between_its_collisions_the_pair_is_the_reference():
+    flow = flows.Vortex(Fr2=50.0)
+    relation = dispersion(flow, np.geomspace(0.12, 10, 5))
+    for k, sigma, error in zip(relation.k, relation.sigma, relation.error, strict=True):
+        assert abs(references.vortex(flow.slope_deg, flow.Fr2, k, sigma) - sigma) <= error
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_random_vortices_are_followed_through_their_collisions(seed):
+    rng = np.random.default_rng(seed)
+    for _ in range(10):
+        flow = flows.Vortex(slope_deg=rng.uniform(5, 45), Fr2=float(np.exp(rng.uniform(0, np.log(50)))))
+        assert not dispersion(flow, [30.0], strict=False).lost
+
+
+def test_a_step_onto_another_mode_is_refused():
+    """Started on one mode, told to expect another, the walk shortens its steps and stays on the first."""
+    solver = Solver(flows.Dune())
+    start = solver.solve(1.0, -4.615 + 0.954j)
+    mode = follow(solver, start, [2.0]).modes[0]
+    surface = dispersion(flows.Dune(), 2.0).sigma[0]
+    assert abs(mode.sigma - surface) > 1
+    back = follow(solver, mode, [1.0]).modes[0]
+    assert abs(back.sigma - start.sigma) <= back.error + start.error
+
+
+def test_without_a_long_wave_limit_the_surface_mode_is_lost(monkeypatch):
+    monkeypatch.setattr(flows.Vortex, "long_wave", lambda self, k: 3.0 + 0 * k)
+    with pytest.raises(ModeLost, match="no mode obeys the long-wave limit"):
+        dispersion(flows.Vortex(), 1.0)
