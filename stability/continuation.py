@@ -35,11 +35,15 @@ INTERRUPTED = "interrupted"
 
 _RESIDUALS = (1e-5, 1e-6, 1e-7, 1e-8)  # tolerances of solve_bvp tried in turn
 _NODES = 20_000
-_STEP_NODES = 200  # a step that needs more than these and four times its mesh has a bad guess
+_STEP_NODES = 150  # a step that needs more than these and twice its mesh has a bad guess
 _START_NODES = 17
-_FIRST_STEP = 0.5  # in log of the parameter
+_FIRST_STEP = 0.2  # in log of the parameter
+_LARGEST_STEP = 0.2
 _SMALLEST_STEP = 2e-3
 _CHANGE = 0.1  # largest relative difference between predictor and corrector
+_NUDGE = 1e-3  # in log of the parameter, for slopes
+_BEND = 0.1  # error of the trapezoidal rule for a step, relative to its largest slope
+_BEND_FLOOR = 1e-3
 _STEPS = 400
 _SAMPLES = 96
 _INSIDE = np.array([0.2, 0.7])
@@ -191,9 +195,8 @@ class Problem:
             return np.array([np.broadcast_to(part, s.shape) for part in found], complex)
 
         leading = np.array([residual(0.0, zero, unit[j])[j] for j in range(4)])
-        constant, total = (-np.array([residual(rate, unit[j], zero) for j in range(4)]).swapaxes(0, 1) / leading[:, None]
-                           for rate in (0.0, 1.0))
-        return np.array([constant, total - constant])
+        constant, total = (-np.array([residual(rate, unit[j], zero) for j in range(4)]) for rate in (0.0, 1.0))
+        return np.array([constant, total - constant]).swapaxes(1, 2) / leading[:, None]
 
     def _split(self, layer):
         """Series of a layer whose shear-rate equation is singular at s = 0, less S / s; S is stored."""
@@ -504,7 +507,7 @@ class _Walk:
 
     def move(self, family, value):
         """Go on along another parameter, which has this value now."""
-        self.family, self.value, self.before = family, value, None
+        self.family, self.value, self.before, self.slope = family, value, None, None
 
     @property
     def sigma(self):
@@ -540,19 +543,25 @@ class _Walk:
         return Point(problem.flow, problem.k, complex(sigma), float(problem.width * error), len(fine.mesh), status)
 
     def _advance(self, value):
+        """Take one step to the value, or shorten the step."""
         length = abs(log(value / self.value))
-        problem = Problem(*self.family(value))
         mesh = _thinned(self.now, self.residuals[0])
         fields, parameters = self._predict(value, mesh)
-        found = _solve(problem, mesh, fields, parameters, self.residuals[0], nodes=_STEP_NODES + 4 * len(mesh))
+        found = self._corrected(value, mesh, fields, parameters)
         change = self._change(found, mesh, fields, parameters) if found else np.inf
-        if change < _CHANGE:
-            self.before, self.now, self.value = (self.value, self.now), found, value
-            self.step = length * min(2.0, max(0.7, (0.5 * _CHANGE / (change + 1e-6)) ** 0.5))
+        slope = self._slope(found, value) if change < _CHANGE else None
+        if slope is not None and self._bends_little(found, slope, log(value / self.value)):
+            self.before, self.now, self.value, self.slope = (self.value, self.now), found, value, slope
+            factor = min(2.0, max(0.7, (0.5 * _CHANGE / (change + 1e-6)) ** 0.5))
+            self.step = min(_LARGEST_STEP, max(length, self.step if length < self.step else 0) * factor)
             return
         self.step = length / 3
         if self.step < _SMALLEST_STEP:
-            raise self._lost("solve_bvp fails at the next step" if not found else "it finds another mode at the next step")
+            raise self._lost("the next step lands on another mode" if found else "solve_bvp fails at the next step")
+
+    def _corrected(self, value, mesh, fields, parameters):
+        problem = Problem(*self.family(value))
+        return _solve(problem, mesh, fields, parameters, self.residuals[0], nodes=_STEP_NODES + 2 * len(mesh))
 
     def _predict(self, value, mesh):
         """Fields and parameters extrapolated in the logarithm of the value."""
@@ -569,6 +578,20 @@ class _Walk:
         now = found.fields(mesh)
         moved = np.linalg.norm(now - fields, axis=1) / np.linalg.norm(now, axis=1).clip(1e-12 * np.linalg.norm(now))
         return max(abs(found.rate - parameters[0]) / abs(found.rate), np.max(moved))
+
+    def _slope(self, solution, value):
+        """d rate / d log(value) by a second solve next to the first; None if it fails."""
+        near = self._corrected(value * exp(_NUDGE), solution.mesh, solution.fields(solution.mesh), solution.parameters)
+        return near and (near.rate - solution.rate) / _NUDGE
+
+    def _bends_little(self, found, slope, length):
+        """True if the slopes at both ends explain the step: it has not jumped across an avoided crossing."""
+        if self.slope is None:
+            self.slope = self._slope(self.now, self.value)
+        if self.slope is None:
+            return False
+        miss = abs(found.rate - self.now.rate - length * (self.slope + slope) / 2)
+        return miss < _BEND * abs(length) * max(abs(self.slope), abs(slope)) + _BEND_FLOOR * abs(found.rate)
 
     def _lost(self, why):
         flow, k = self.now.problem.flow, self.now.problem.k
