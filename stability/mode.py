@@ -152,8 +152,8 @@ class Solver:
         if error > self.tolerance * abs(sigma):
             status = f"error {error:.1e} exceeds tolerance at degree {degree}"
         slope = width * eigen.slope + (1 + self.flow.order) * sigma / k
-        return Mode(self.flow, float(k), complex(sigma), float(error), complex(slope), degree, status, float(truncation),
-                    float(rounding), eigen.rate, eigen.slope, eigen.x, eigen.y,
+        return Mode(self.flow, float(k), complex(sigma), float(error), complex(slope), degree, status,
+                    float(truncation), float(rounding), eigen.rate, eigen.slope, eigen.x, eigen.y,
                     eigen.bx, eigen.by)
 
 

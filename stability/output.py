@@ -43,7 +43,8 @@ def _csv(header, rows):
     writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
     writer.writeheader()
     for row in rows:
-        writer.writerow({key: json.dumps(_plain(value)) if isinstance(value, list) else value for key, value in row.items()})
+        writer.writerow({key: json.dumps(_plain(value)) if isinstance(value, list) else value
+                         for key, value in row.items()})
     return text.getvalue()
 
 

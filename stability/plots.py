@@ -65,7 +65,8 @@ def _spectra(spectra, figure, axes):
 
 def _optima(name, optima, left, right):
     x = [getattr(optimum.flow, name) if name else 0.0 for optimum in optima]
-    for axis, label, get in ((left, "$k_{max}$", lambda m: m.k), (right, r"growth rate at $k_{max}$", lambda m: m.growth_rate)):
+    quantities = ((left, "$k_{max}$", lambda m: m.k), (right, r"growth rate at $k_{max}$", lambda m: m.growth_rate))
+    for axis, label, get in quantities:
         others = [(value, get(m)) for value, optimum in zip(x, optima, strict=True) for m in optimum.maxima[1:]]
         if others:
             axis.plot(*zip(*others, strict=True), ".", color=RED, markersize=4, label="other local maxima")

@@ -41,5 +41,6 @@ def _number(text, name):
     except ValueError:
         value = None
     if value is None or not isfinite(value):
-        raise ParameterError(f"{name}: not a finite number: {text!r}; give a number, a list a,b,c or a range a:b:n[:lin]")
+        raise ParameterError(f"{name}: not a finite number: {text!r}; "
+                             "give a number, a list a,b,c or a range a:b:n[:lin]")
     return value

@@ -47,7 +47,8 @@ def test_a_collision_of_real_modes_is_found_where_the_reference_has_it():
     for collision, step in ((first, 1e-6), (second, -1e-6)):
         paired = references.vortex(flow.slope_deg, flow.Fr2, collision.k * (1 + step),
                                    complex(collision.sigma, 1e-3 * abs(collision.sigma)), radius=0.5)
-        real = references.vortex(flow.slope_deg, flow.Fr2, collision.k * (1 - step), 1.002 * collision.sigma, radius=0.5)
+        real = references.vortex(flow.slope_deg, flow.Fr2, collision.k * (1 - step), 1.002 * collision.sigma,
+                                 radius=0.5)
         assert abs(paired.imag) > 1e-5
         assert real.imag == 0
     assert relation.sigma[0].imag == 0 == relation.sigma[2].imag

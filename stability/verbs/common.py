@@ -30,7 +30,8 @@ def add_verb(verbs, name, run, summary, example, *options):
             if flag(item) not in verb._option_string_actions:
                 group.add_argument(flag(item), dest=f"parameter {item.name}", metavar="V",
                                    help=f"{item.metadata['meaning']}; {allowed(item.metadata)}, default {item.default}")
-    verb.add_argument("--tolerance", metavar="T", default=str(TOLERANCE), help="relative error of sigma accepted as resolved")
+    verb.add_argument("--tolerance", metavar="T", default=str(TOLERANCE),
+                      help="relative error of sigma accepted as resolved")
     verb.add_argument("--max-degree", metavar="N", default=str(DEGREES[-1]), help="largest Chebyshev degree tried")
     form = verb.add_mutually_exclusive_group()
     form.add_argument("--csv", dest="form", action="store_const", const="csv", help="comma-separated values")
@@ -112,7 +113,7 @@ def report(arguments, flow, compute):
         plot = _plot_file(arguments, stack)
         rows, result, notes = compute()
         header = {"flow": flow.name, "parameters": {item.name: getattr(flow, item.name) for item in fields(flow)},
-                  "method": "collocation", "version": __version__}
+                  "method": getattr(arguments, "method", "collocation"), "version": __version__}
         if notes:
             header["notes"] = notes
         if plot:
