@@ -1,14 +1,16 @@
 """stability dispersion: growth rate and phase speed over wavenumbers."""
 
 from ..errors import ParameterError
-from ..relation import MODES, dispersion
+from ..relation import MODES, DispersionRelation, dispersion
 from ..specs import parse_spec
-from .common import add_verb, flow_of, k_option, lost_row, mode_row, options_of, report
+from .common import add_verb, flow_of, k_option, lost_row, mode_row, options_of, progress, report
+from .methods import INTERRUPTED, INTERRUPTED_STATUS, method_of, method_options
 
 
 def add(verbs):
     add_verb(verbs, "dispersion", _run, "growth rate and phase speed over wavenumbers",
-             "stability dispersion dune --Re 100 --k 1e-2:10:50 --plot dune.png", k_option, _mode_option)
+             "stability dispersion dune --Re 100 --k 1e-2:10:50 --plot dune.png",
+             k_option, _mode_option, method_options)
 
 
 def _mode_option(verb):
@@ -20,12 +22,38 @@ def _run(arguments):
     wavenumbers = parse_spec(arguments.k, "--k")
     if arguments.mode not in MODES:
         raise ParameterError(f"--mode: must be one of {', '.join(MODES)} (got {arguments.mode!r})")
+    bvp = method_of(arguments, flow, options["tolerance"])
+    if not bvp:
+        return report(arguments, flow, lambda: _collocation(flow, wavenumbers, arguments.mode, options))
+    if arguments.mode != MODES[0]:
+        raise ParameterError(f"--mode {arguments.mode}: --method {arguments.method} follows the surface mode only")
+    lost = {}
+    status = report(arguments, flow, lambda: _continuation(arguments, flow, wavenumbers, bvp, lost))
+    return INTERRUPTED_STATUS if INTERRUPTED in lost.values() else status
 
-    def compute():
-        relation = dispersion(flow, wavenumbers, arguments.mode, strict=False, **options)
-        found = {mode.k: mode for mode in relation.modes}
-        rows = [mode_row(found[k]) if k in found else lost_row(k) for k in wavenumbers.tolist()]
-        notes = sorted({str(collision) for collision in relation.collisions} | set(relation.lost.values()))
-        return rows, relation, notes
 
-    return report(arguments, flow, compute)
+def _collocation(flow, wavenumbers, mode, options):
+    relation = dispersion(flow, wavenumbers, mode, strict=False, **options)
+    found = {mode.k: mode for mode in relation.modes}
+    rows = [mode_row(found[k]) if k in found else lost_row(k) for k in wavenumbers.tolist()]
+    notes = sorted({str(collision) for collision in relation.collisions} | set(relation.lost.values()))
+    return rows, relation, notes
+
+
+def _continuation(arguments, flow, wavenumbers, bvp, lost):
+    """Rows, result and notes of a continuation; fills `lost`."""
+    from ..continuation import continue_in_k
+
+    found = continue_in_k(flow, wavenumbers, report=lambda done, total: progress(arguments, done, total), **bvp)
+    lost.update(found.lost)
+    points = {point.k: point for point in found.points}
+    rows = [_point_row(k, points.get(k)) for k in wavenumbers.tolist()]
+    ordered = tuple(points[k] for k in wavenumbers.tolist() if k in points)
+    return rows, DispersionRelation(flow, MODES[0], ordered, found.lost, ()), sorted(set(found.lost.values()))
+
+
+def _point_row(k, point):
+    if point is None:
+        return {"k": k, "growth_rate": None, "phase_speed": None, "error": None, "nodes": None, "status": "lost"}
+    return {"k": k, "growth_rate": point.growth_rate, "phase_speed": point.phase_speed, "error": point.error,
+            "nodes": point.nodes, "status": point.status}

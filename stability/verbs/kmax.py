@@ -1,12 +1,14 @@
 """stability kmax: the fastest growing wavenumber, over a parameter."""
 
-from ..optimum import k_max_sweep
+from ..errors import StabilityError
+from ..optimum import Optimum, k_max_sweep
 from .common import SPEC, add_verb, flow_of, options_of, progress, report, sweep_of
+from .methods import INTERRUPTED, INTERRUPTED_STATUS, method_of, method_options
 
 
 def add(verbs):
     add_verb(verbs, "kmax", _run, "the fastest growing wavenumber, over a parameter",
-             "stability kmax dune --over Re=0.1:1e4:41 --plot kmax.png", _over_option)
+             "stability kmax dune --over Re=0.1:1e4:41 --plot kmax.png", _over_option, method_options)
 
 
 def _over_option(verb):
@@ -16,15 +18,33 @@ def _over_option(verb):
 def _run(arguments):
     flow, options = flow_of(arguments), options_of(arguments)
     name, sweep = sweep_of(arguments, flow)
+    bvps = [method_of(arguments, one, options["tolerance"]) for one in sweep]
+
+    found = []
 
     def compute():
-        found = []
-        for optimum in k_max_sweep(sweep, **options):
-            found.append(optimum)
-            progress(arguments, len(found), len(sweep))
+        optima = k_max_sweep(sweep, **options) if bvps[0] is None else map(_bounded, sweep, bvps)
+        try:
+            for optimum in optima:
+                found.append(optimum)
+                progress(arguments, len(found), len(sweep))
+        except KeyboardInterrupt:
+            found.extend(Optimum(one, (), INTERRUPTED) for one in sweep[len(found):])
         return [_row(name, optimum) for optimum in found], (name, found), []
 
-    return report(arguments, flow, compute)
+    status = report(arguments, flow, compute)
+    return INTERRUPTED_STATUS if found and found[-1].status == INTERRUPTED else status
+
+
+def _bounded(flow, bvp):
+    """The optimum of a flow by bounded minimisation over solve_bvp's growth rates; the first maximum only."""
+    from ..continuation import bounded_maximum
+
+    try:
+        found = bounded_maximum(flow, **bvp)
+    except StabilityError as reason:
+        return Optimum(flow, (), str(reason))
+    return Optimum(flow, (found,), found.mode.status)
 
 
 def _row(name, optimum):
