@@ -11,7 +11,9 @@ The perturbation of the velocity gradient at the wall is -R s0. R is derived her
 and evaluated at any k in multiple precision by `response`.
 """
 
+from fractions import Fraction
 from functools import cache
+from math import factorial
 
 import sympy as sp
 
@@ -133,36 +135,28 @@ def boundary_layer(terms=3) -> Expansion:
     return Expansion("fluid", "boundary-layer", found, powers[-1], {"Re": None}, quantity="R")
 
 
-@cache
 def short_wave_coefficient(n: int) -> sp.Expr:
     """Coefficient of (Re/k^2)^n in R/k.
 
-    In y = k z the vorticity solves Omega'' - Omega = i lambda y Omega, lambda = Re/k^2: at each order a
-    polynomial times e^{-y}; the integral of Omega e^{-y} is -1.
+    In y = k z the vorticity solves Omega'' - Omega = i lambda y Omega, lambda = Re/k^2: at each order i^n
+    times a polynomial times e^{-y}; the integral of Omega e^{-y} is -1.
     """
-    return sp.expand(_short_wave_vorticity(n).subs(_y, 0))
-
-
-_y = sp.Symbol("y", positive=True)
+    wall = _short_wave_vorticity(n)[0]
+    return sp.I**n * sp.Rational(wall.numerator, wall.denominator)
 
 
 @cache
-def _short_wave_vorticity(n: int) -> sp.Expr:
-    """Polynomial factor of e^{-y} in the vorticity at order lambda^n."""
-    if n < 0:
-        return sp.Integer(0)
-    source = sp.Poly(sp.I * _y * _short_wave_vorticity(n - 1), _y)
-    # (a' e^{-y})-equation: a'' - 2 a' = source, highest power first
-    slope, rest = sp.Integer(0), source
-    while rest != 0:
-        (power,), c = rest.LT()[0].exponents, rest.LC()
-        term = -c * _y**power / 2
-        slope += term
-        rest = sp.Poly(rest.as_expr() - sp.diff(term, _y) + 2 * term, _y)
-    polynomial = sp.integrate(slope, _y)
-    total = sum(c * sp.factorial(power) / sp.Integer(2) ** (power + 1)
-                for (power,), c in sp.Poly(polynomial, _y).terms()) if polynomial != 0 else 0
-    return polynomial - 2 * (total + (1 if n == 0 else 0))
+def _short_wave_vorticity(n: int) -> tuple[Fraction, ...]:
+    """Coefficients of the polynomial factor P of the vorticity at order n:  P'' - 2 P' = y P_{n-1}."""
+    if n == 0:
+        return (Fraction(-2),)
+    source = [Fraction(0), *_short_wave_vorticity(n - 1)]
+    slope = [Fraction(0)] * (len(source) + 1)
+    for j in reversed(range(len(source))):
+        slope[j] = ((j + 1) * slope[j + 1] - source[j]) / 2
+    rest = [c / (j + 1) for j, c in enumerate(slope[:-1])]
+    moment = sum(c * Fraction(factorial(j), 2 ** (j + 1)) for j, c in enumerate(rest, 1))
+    return (-2 * moment, *rest)
 
 
 @cache
@@ -185,7 +179,7 @@ def response(k, Re, depth=float("inf"), digits: int = 16):
 
     if depth != float("inf"):
         return _lid_response(mpmath, k, Re, depth, digits)
-    if Re < 1e-3 * k * k:
+    if Re * (digits + 10) < k * k / 2:  # its smallest term is about exp(-(4/3) k^2/Re)
         return _short_wave_sum(mpmath, k, Re, digits)
     return _unbounded_response(mpmath, k, Re, digits)
 
@@ -211,13 +205,13 @@ class WallResponse(sp.Function):
 
 
 def _short_wave_sum(mp, k, Re, digits):
-    """The short-wave series, whose terms fall until about the (k^2/Re)-th."""
+    """The short-wave series, an asymptotic one, up to terms below the digits asked for."""
     with mp.workdps(digits + 10):
         ratio, total, n = mp.mpf(Re) / mp.mpf(k) ** 2, mp.mpc(0), 0
         term = mp.mpc(1)
         while abs(term) > mp.mpf(10) ** -(digits + 5):
-            real, imaginary = short_wave_coefficient(n).as_real_imag()
-            term = mp.mpc(mp.mpf(real.p) / real.q, mp.mpf(imaginary.p) / imaginary.q) * ratio**n
+            wall = _short_wave_vorticity(n)[0]
+            term = mp.mpf(wall.numerator) / wall.denominator * (mp.j * ratio) ** n
             total, n = total + term, n + 1
         total *= k
     return total

@@ -80,10 +80,12 @@ def compare(numeric, series, k, expected: float, *, correction: float | None = N
                       are left out, the others weighted by it
     Raises TooFewPoints if fewer than four points remain.
     """
-    k = np.sort(np.asarray(k, dtype=float))
+    k = np.asarray(k, dtype=float)
     numeric, series = (np.asarray(values(k) if isinstance(values, Callable) else values, dtype=complex)
                        for values in (numeric, series))
-    floor = np.zeros_like(k) if error is None else np.asarray(error, dtype=float)
+    floor = np.broadcast_to(0.0 if error is None else np.asarray(error, dtype=float), k.shape)
+    rising = np.argsort(k)
+    k, numeric, series, floor = k[rising], numeric[rising], series[rising], floor[rising]
     heard = np.abs(numeric - series) > NOISE * floor
     if heard.sum() < FEWEST:
         raise TooFewPoints(f"the difference between numerics and series exceeds {NOISE:g} times the numerics' error at "
