@@ -56,6 +56,7 @@ class Pencil:
         self.tail = np.ascontiguousarray(full[:, self.size:])
         self.squares = np.abs(self.stack) ** 2
         self.real = np.isrealobj(self.stack)
+        self._factors = tuple(tuple(name for name in part if name != "rate") for part in self.parts)
 
     def _equation_blocks(self, system):
         """Yield (monomial, rows, columns, matrix) of every term, main rows and tail rows."""
@@ -89,13 +90,17 @@ class Pencil:
     def weights(self, symbols):
         """Return the `Weights` for symbols {name: (value, slope, error)} at one wavenumber."""
         value, slope, spread = [], [], []
-        for part in self.parts:
-            factors = [symbols[name] for name in part if name != "rate"]
+        for names in self._factors:
+            factors = [symbols[name] for name in names]
             others = [prod(g[0] for g in factors[:i] + factors[i + 1:]) for i in range(len(factors))]
             value.append(prod(f[0] for f in factors))
             slope.append(sum(o * f[1] for o, f in zip(others, factors, strict=True)))
             spread.append(sum(abs(o) * f[2] for o, f in zip(others, factors, strict=True)))
         return Weights(np.array(value), np.array(slope), np.array(spread))
+
+    def apply(self, stack, x):
+        """Return every part of `stack` (parts, rows, size) times x: shape (parts, rows)."""
+        return (stack.reshape(-1, self.size) @ x).reshape(len(self.parts), -1)
 
     def pair(self, weights):
         """Return the dense matrices A and B, each (size, size)."""
