@@ -3,6 +3,7 @@
 import numpy as np
 
 from .relation import DispersionRelation
+from .wellposed import WellPosedness
 
 STYLE = {
     "figure.constrained_layout.use": True,
@@ -29,6 +30,8 @@ def draw(result, path):
             _dispersion(result, *axes)
         elif isinstance(result, list):
             _spectra(result, figure, axes)
+        elif isinstance(result[0], WellPosedness):
+            _well_posedness(*result, *axes)
         else:
             _optima(*result, *axes)
         figure.suptitle(_caption(result), fontsize=8, color=GREY)
@@ -38,7 +41,9 @@ def draw(result, path):
 def _caption(result):
     if isinstance(result, DispersionRelation):
         return f"{result.flow}, {result.mode} mode"
-    return str(result[0].flow) if isinstance(result, list) else str(result[1][0].flow)
+    if isinstance(result, list) or isinstance(result[0], WellPosedness):
+        return str(result[0].flow)
+    return str(result[1][0].flow)
 
 
 def _dispersion(relation, left, right):
@@ -77,6 +82,31 @@ def _optima(name, optima, left, right):
         scale = "log" if len(x) > 1 and min(x) > 0 and _spans_decades(x) else "linear"
         axis.set(xlabel=f"${name}$" if name and len(name) < 3 else name or "", ylabel=label, xscale=scale,
                  yscale="log" if best and scale == "log" else "linear")
+
+
+def _well_posedness(found, growth, left, right):
+    """C through the layers, ill-posed strips shaded; largest growth rate against k by degree."""
+    for name in dict.fromkeys(found.layer):
+        rows = np.array([layer == name for layer in found.layer])
+        left.plot(found.C[rows], found.height[rows], color=BLUE)
+    for strip in found.strips:
+        left.axhspan(strip.low, strip.high, color=RED, alpha=0.15, linewidth=0)
+    left.axvline(0, color=GREY, linewidth=0.6)
+    left.set(xlabel="$C$, ill posed where $C > 0$", ylabel="height in the layer")
+    k = [one.k for one in growth]
+    rates = np.array([one.rates for one in growth])
+    scale = {"value": "symlog", "linthresh": 1e-2}
+    for column, degree in enumerate(growth[0].degrees):
+        shade = 0.25 + 0.75 * column / (len(growth[0].degrees) - 1)
+        right.plot(k, rates[:, column], color=RED, alpha=shade, label=f"degree {degree}")
+    surface = [(one.k, one.surface) for one in growth if one.surface is not None]
+    if surface:
+        right.plot(*zip(*surface, strict=True), color=BLUE, linestyle="--", label="surface mode")
+    right.axhline(0, color=GREY, linewidth=0.6)
+    right.set_xscale("log")
+    right.set_yscale(**scale)
+    right.set(xlabel="wavenumber $k$", ylabel=r"largest growth rate $\sigma_r$")
+    right.legend(fontsize=7)
 
 
 def _spans_decades(values):

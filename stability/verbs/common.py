@@ -14,6 +14,7 @@ from ..output import render, whole_file, write
 from ..specs import parse_spec
 
 SPEC = "a number, a list a,b,c, or a range a:b:n (log-spaced) or a:b:n:lin"
+RESOLVED = "resolved"  # the status of a good row begins with it
 _PLOTS = (".png", ".pdf", ".svg")
 
 
@@ -120,7 +121,7 @@ def report(arguments, flow, compute):
             from ..plots import draw  # matplotlib takes longer to import than most results to compute
 
             draw(result, plot)
-        failed = [row for row in rows if row["status"] != "resolved"]
+        failed = [row for row in rows if not row["status"].startswith(RESOLVED)]
         if not arguments.quiet:
             for note in notes:
                 print(f"stability: {note}", file=sys.stderr)

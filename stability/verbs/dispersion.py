@@ -3,7 +3,8 @@
 from ..errors import ParameterError
 from ..relation import MODES, DispersionRelation, dispersion
 from ..specs import parse_spec
-from .common import add_verb, flow_of, k_option, lost_row, mode_row, options_of, progress, report
+from ..wellposed import outgrown
+from .common import RESOLVED, add_verb, flow_of, k_option, lost_row, mode_row, options_of, progress, report
 from .methods import INTERRUPTED, INTERRUPTED_STATUS, method_of, method_options
 
 
@@ -35,9 +36,21 @@ def _run(arguments):
 def _collocation(flow, wavenumbers, mode, options):
     relation = dispersion(flow, wavenumbers, mode, strict=False, **options)
     found = {mode.k: mode for mode in relation.modes}
-    rows = [mode_row(found[k]) if k in found else lost_row(k) for k in wavenumbers.tolist()]
+    row = mode_row if mode == MODES[0] else _refusing_row
+    rows = [row(found[k]) if k in found else lost_row(k) for k in wavenumbers.tolist()]
     notes = sorted({str(collision) for collision in relation.collisions} | set(relation.lost.values()))
+    faster = outgrown(relation)
+    if faster:
+        notes.append(f"{flow}: {faster}")
+        rows = [{**row, "status": f"{row['status']}; outgrown"} if row["k"] >= faster.k else row for row in rows]
     return rows, relation, notes
+
+
+def _refusing_row(mode):
+    """An unresolved most unstable mode is no result: the row says what failed, without the number."""
+    if mode.status == RESOLVED:
+        return mode_row(mode)
+    return {**lost_row(mode.k), "degree": mode.degree, "status": mode.status}
 
 
 def _continuation(arguments, flow, wavenumbers, bvp, lost):

@@ -1,0 +1,53 @@
+"""stability wellposed: where a flow's own equations are ill posed, and how its fastest modes grow with k."""
+
+from ..specs import parse_spec
+from ..wellposed import growth_with_degree, well_posedness
+from .common import RESOLVED, add_verb, flow_of, integer, report
+
+_POINTS = "21"
+_WAVENUMBERS = "1:100:9"  # of the second panel of the figure
+
+
+def add(verbs):
+    add_verb(verbs, "wellposed", _run, "where the equations are ill posed, and how internal modes grow with k",
+             "stability wellposed dune --shields 1.05 --mu1 0.7 --k 1,3,10,30,100", _k_option, _points_option)
+
+
+def _k_option(verb):
+    verb.add_argument("--k", metavar="SPEC", help="wavenumbers: report the largest growth rate of all modes there, "
+                                                  "by Chebyshev degree, instead of C through the layer")
+
+
+def _points_option(verb):
+    verb.add_argument("--points", default=_POINTS, metavar="N", help=f"points of each layer (default {_POINTS})")
+
+
+def _run(arguments):
+    flow = flow_of(arguments)
+    count = integer(arguments.points, "--points", 2, 100_000)
+    wavenumbers = parse_spec(arguments.k, "--k") if arguments.k else None
+
+    def compute():
+        layers = well_posedness(flow)
+        notes = [f"{flow}: {strip}" for strip in layers.strips]
+        growth = ()
+        if wavenumbers is not None or arguments.plot:
+            growth = growth_with_degree(flow, parse_spec(_WAVENUMBERS, "") if wavenumbers is None else wavenumbers)
+        rows = _layer_rows(well_posedness(flow, count)) if wavenumbers is None else [_growth_row(one) for one in growth]
+        return rows, (layers, growth), notes
+
+    return report(arguments, flow, compute)
+
+
+def _layer_rows(found):
+    columns = zip(found.layer, found.height.tolist(), found.C.tolist(), found.short_waves.tolist(), found.ill.tolist(),
+                  strict=True)
+    return [{"layer": layer, "height": height, "C": C, "short_waves": growth, "ill_posed": "yes" if ill else "no",
+             "status": RESOLVED} for layer, height, C, growth, ill in columns]
+
+
+def _growth_row(growth):
+    """Largest growth rates by degree; no number where the last two degrees disagree is called a result."""
+    columns = {f"degree_{degree}": float(rate) for degree, rate in zip(growth.degrees, growth.rates, strict=True)}
+    status = RESOLVED if growth.settled else f"unresolved: still moves at degree {growth.degrees[-1]}"
+    return {"k": growth.k, "surface_mode": growth.surface, **columns, "status": status}

@@ -1,0 +1,198 @@
+"""Where a flow's own model fails: ill-posed strips of its layers, and the internal modes that live there.
+
+In a layer whose short waves grow without bound (`stability.rheology`) the spectrum at one k may still
+converge: waves across the strip cannot be shorter than it is thick. Its internal modes then grow ever faster with k,
+and beyond some k no degree resolves them. The slow surface mode need not notice, but it is not what one would see.
+"""
+
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import chebyshev as C
+
+from . import chebyshev
+from .mode import Solver
+from .relation import dispersion
+from .rheology import condition, ill_posed, short_wave_growth
+from .spectra import finite_rates
+from .threads import one_thread
+
+POINTS = 201
+DEGREES = (16, 24, 32, 48, 64)
+
+_CHECK_DEGREES = (16, 24)  # of the look for a faster mode
+_FASTER = 1e-6  # relative excess of growth that counts as faster
+_SETTLED = 1e-4  # relative difference of two degrees that counts as converged
+
+
+@dataclass(frozen=True)
+class Strip:
+    """An ill-posed part of a layer: from `low` to `high` above the layer's lower edge."""
+
+    layer: str
+    low: float
+    high: float
+
+    def __str__(self):
+        return f"{self.layer} is ill posed between heights {self.low:.4g} and {self.high:.4g} above its lower edge"
+
+
+@dataclass(frozen=True)
+class WellPosedness:
+    """C and the growth of short waves through the sheared layers of a flow.
+
+    Arrays have shape (points,), layer after layer from below: `layer` name, `height` above its lower
+    edge, `C`, `short_waves` = largest lambda / k^2 and `ill` = whether it is positive. `strips` are the
+    ill-posed parts.
+    """
+
+    flow: Any
+    layer: tuple
+    height: np.ndarray
+    C: np.ndarray
+    short_waves: np.ndarray
+    ill: np.ndarray
+    strips: tuple
+
+    @property
+    def ill_posed(self):
+        return bool(self.strips)
+
+
+@dataclass(frozen=True)
+class Growth:
+    """Largest growth rate of all modes at wavenumber k, by degree (degrees,), and that of the surface mode, or None."""
+
+    k: float
+    degrees: tuple
+    rates: np.ndarray
+    surface: float | None
+
+    @property
+    def settled(self):
+        """Whether the last two degrees agree."""
+        return abs(self.rates[-1] - self.rates[-2]) <= _SETTLED * abs(self.rates[-1])
+
+
+def well_posedness(flow, points=POINTS):
+    """Return the `WellPosedness` of a flow, at `points` points of each of its layers.
+
+    >>> from stability import flows
+    >>> well_posedness(flows.RollWave(slope_deg=28.0)).ill_posed
+    False
+    """
+    parts, strips = [], []
+    for layer in flow.layers(_numbers(flow)):
+        s = (1 - np.cos(np.pi * np.arange(points) / (points - 1))) / 2
+        height = _height(layer, s)
+        ratio, alpha, eta, rho = _coefficients(layer, s)
+        ill = ill_posed(ratio, alpha)
+        parts.append((np.full(points, layer.name), height, condition(ratio, alpha),
+                      short_wave_growth(eta, ratio, alpha, rho), ill))
+        strips += _strips(layer, s, ill)
+    names, *arrays = (np.concatenate(column) for column in zip(*parts, strict=True))
+    return WellPosedness(flow, tuple(names.tolist()), *arrays, tuple(strips))
+
+
+@one_thread
+def growth_with_degree(flow, k, degrees=DEGREES):
+    """Return the `Growth` at each wavenumber: does the spectrum converge, does an internal mode outgrow the surface?"""
+    solver = Solver(flow)
+    wavenumbers = np.unique(np.asarray(k, dtype=float))
+    surface = {}
+    if flow.has_surface_mode():
+        found = dispersion(flow, wavenumbers, strict=False)
+        surface = {mode.k: mode.growth_rate for mode in found.modes}
+    return tuple(Growth(value, tuple(degrees), np.array([_leading(solver, value, degree) for degree in degrees]),
+                        surface.get(value)) for value in wavenumbers.tolist())
+
+
+@dataclass(frozen=True)
+class Outgrown:
+    """From wavenumber `k` on another mode grows faster than the surface mode: at `rate` there, None if unresolved."""
+
+    k: float
+    rate: float | None
+    strips: tuple
+
+    def __str__(self):
+        pace = "that no degree resolves" if self.rate is None else f"({self.rate:.6g})"
+        return (f"an internal mode {pace} outgrows the surface mode from k = {self.k:.6g} on: "
+                f"{'; '.join(map(str, self.strips))}")
+
+
+@one_thread
+def outgrown(relation):
+    """Where another mode outgrows a surface-mode `DispersionRelation`: an `Outgrown`, or None.
+
+    Well-posed flows are not searched. Assumes that internal modes, once ahead, stay ahead as k rises: the
+    wavenumbers of the relation are bisected.
+    """
+    modes = sorted(relation.modes, key=lambda mode: mode.k)
+    strips = well_posedness(relation.flow).strips if modes and relation.mode == "surface" else ()
+    if not strips:
+        return None
+    solver = Solver(relation.flow)
+    rates = {}
+    below, above = -1, len(modes)
+    middle = len(modes) - 1
+    while above - below > 1:
+        rates[middle] = _faster(solver, modes[middle])
+        below, above = (middle, above) if rates[middle] is None else (below, middle)
+        middle = (below + above) // 2
+    if above == len(modes):
+        return None
+    coarse, fine = rates[above]
+    return Outgrown(modes[above].k, fine if abs(fine - coarse) < _SETTLED * abs(fine) else None, strips)
+
+
+def _faster(solver, mode):
+    """Leading growth rates at two degrees if both exceed that of this mode, else None."""
+    rates = [_leading(solver, mode.k, degree) for degree in _CHECK_DEGREES]
+    return rates if min(rates) > mode.growth_rate + _FASTER * abs(mode.sigma) + 10 * mode.error else None
+
+
+def _leading(solver, k, degree):
+    return float(solver.width(k) * finite_rates(solver, degree, solver.symbols(k))[0].real)
+
+
+def _numbers(flow):
+    """Stand-ins for the symbols that a flow's layers may use: heights only, which C does not depend on."""
+    return SimpleNamespace(k=1.0, rate=0.0, **dict.fromkeys((*flow.functions, *flow.surfaces), 1.0))
+
+
+def _coefficients(layer, s):
+    """beta / eta, alpha, eta and rho at the points s, as arrays; the limit where an edge gives inf or 0/0."""
+    inside = np.clip(s, 1e-9, 1 - 1e-9)
+    base = layer.profile(inside)
+    ratio, alpha, eta, rho = (np.broadcast_to(np.asarray(value, dtype=float), s.shape)
+                              for value in (base.beta / base.eta, base.alpha, base.eta, base.rho))
+    return ratio, alpha, eta, rho
+
+
+def _height(layer, s):
+    """Distance from the lower edge, the integral of dz/ds."""
+    points = chebyshev.points(64)
+    slope = np.broadcast_to(np.asarray(layer.profile(points).dz, dtype=float), points.shape)
+    integral = C.chebint(chebyshev.coefficients(slope), lbnd=-1) / 2
+    return C.chebval(2 * s - 1, integral)
+
+
+def _strips(layer, s, ill):
+    """The ill-posed intervals between points of either kind, their ends bisected."""
+    changes = np.flatnonzero(ill[1:] != ill[:-1])
+    ends = [_edge(layer, s[i], s[i + 1], ill[i]) for i in changes]
+    ends = ([0.0] if ill[0] else []) + ends + ([1.0] if ill[-1] else [])
+    heights = _height(layer, np.array(ends)) if ends else []
+    return [Strip(layer.name, float(low), float(high))
+            for low, high in zip(heights[::2], heights[1::2], strict=True)]
+
+
+def _edge(layer, low, high, ill_below):
+    for _ in range(60):
+        middle = (low + high) / 2
+        ratio, alpha, _, _ = _coefficients(layer, np.array([middle]))
+        low, high = (middle, high) if ill_posed(ratio, alpha)[0] == ill_below else (low, middle)
+    return middle
