@@ -1,0 +1,189 @@
+"""The growth of one mode over the plane of wavenumber k and one parameter of a flow, and where to find it.
+
+A `Point` is a mode with the gradient of its growth rate. Moving from point to point keeps to the mode: the
+rate is predicted from the gradient, and old and new eigenvectors must be biorthogonal partners, as in
+`stability.tracking`.
+"""
+
+from dataclasses import dataclass, replace
+from math import exp, log
+from typing import Any
+
+import numpy as np
+
+from .errors import ModeLost, ParameterError
+from .mode import Solver, transfer
+from .sensitivity import parameter_slope
+from .spectra import finite_rates, leading_modes
+
+_NEAR = 0.6  # in log k
+_DRIFT = 0.05  # of the growth between two degrees, relative to |sigma|, at which a look is good enough
+_OVERLAP = 0.5
+_HALVINGS = 12
+_FIRST = 0.01  # value tried instead of 0
+_SETTLED = 1e-3  # growth / |sigma| nearer to zero than this, in a look, is computed properly
+
+
+@dataclass(frozen=True)
+class Point:
+    """A mode at wavenumber k and parameter `value`: its growth rate and the gradient of it in (log k, value)."""
+
+    k: float
+    value: float
+    mode: Any
+    by_value: complex  # d sigma / d value
+
+    @property
+    def growth(self):
+        return self.mode.growth_rate
+
+    @property
+    def gradient(self):
+        return np.array([self.k * self.mode.slope.real, self.by_value.real])
+
+
+class Plane:
+    """Modes of `flow` at any wavenumber and any value of its parameter `vary`, to a relative `tolerance`."""
+
+    def __init__(self, flow, vary, tolerance, max_degree):
+        self.flow, self.vary = flow, vary
+        self.tolerance, self.max_degree = tolerance, max_degree
+        long_waves = flow.has_surface_mode()
+        self.power = 2 if long_waves else 0  # growth of a surface mode is of the order of k^power in long waves
+        self.wavenumbers = np.geomspace(0.01, 20, 20) if long_waves else np.geomspace(0.1, 10, 13)
+        self._first = 6  # rung of the degrees at which a look starts
+        self._value = self._solver = None
+
+    def solver(self, value):
+        """The solver at this value; the last one is kept."""
+        if value != self._value:
+            flow = replace(self.flow, **{self.vary: value})
+            self._value, self._solver = value, Solver(flow, self.tolerance, self.max_degree)
+        return self._solver
+
+    def rough(self, tolerance):
+        """The same plane, no more accurate than this."""
+        return Plane(self.flow, self.vary, max(self.tolerance, tolerance), self.max_degree)
+
+    def leading(self, k, value):
+        """The least stable mode."""
+        found = leading_modes(self.solver(value), k, 1)
+        if not found:
+            raise ModeLost(f"{self.solver(value).flow}: no mode settles at k = {k:g}")
+        return self._point(k, value, found[0])
+
+    def move(self, start, k, value):
+        """The mode of `start` at another point; in several steps where one would not be safe."""
+        at, reached, step = start, 0.0, 1.0
+        for _ in range(4 * _HALVINGS):
+            ahead = min(1.0, reached + step)
+            point = self._step(at, start.k * (k / start.k) ** ahead if ahead < 1 else k,
+                               start.value + (value - start.value) * ahead if ahead < 1 else value)
+            if point is None:
+                step /= 2
+                if step < 0.5**_HALVINGS:
+                    break
+            elif ahead == 1:
+                return point
+            else:
+                at, reached, step = point, ahead, 2 * step
+        raise ModeLost(f"{start.mode.flow}: the mode is lost between k = {start.k:.6g} and {k:.6g}, "
+                       f"{self.vary} = {start.value:.6g} and {value:.6g}")
+
+    def _step(self, start, k, value):
+        """The mode of `start` at a nearby point, or None where it is not safely the same."""
+        solver, old = self.solver(value), start.mode
+        change = old.slope * (k - start.k) + start.by_value * (value - start.value)
+        vectors = (old.degree, old.x, old.y)
+        degree = old.degree if old.degree in solver.degrees else solver.degrees[-1]
+        try:
+            mode = solver.solve(k, (old.sigma + change) / solver.width(k), vectors, degree)
+        except ModeLost:
+            return None
+        x, y = transfer(solver, vectors, mode.degree)
+        overlap = np.vdot(y, mode.bx) * np.vdot(mode.by, x)
+        return self._point(k, value, mode) if abs(overlap - 1) < _OVERLAP else None
+
+    def _point(self, k, value, mode):
+        return Point(k, value, mode, complex(parameter_slope(self.solver(value), mode, self.vary)))
+
+    def near_largest(self, value):
+        """A point near the largest growth rate over k."""
+        growth, rates = self._look(value)
+        best = int(np.argmax(growth))
+        self._check_end(value, growth)
+        solver, k = self.solver(value), float(self.wavenumbers[best])
+        degree = solver.degrees[min(8, len(solver.degrees) - 1)]
+        return self._point(k, value, solver.solve(k, rates[best], None, degree))
+
+    def most_unstable(self, value, beyond=None):
+        """The point of largest growth / k^power among unstable ones, or None; near `beyond` does not count."""
+        growth, rates = self._look(value)
+        self._check_end(value, growth)
+        unstable = []
+        for k, size, rate in zip(self.wavenumbers.tolist(), growth, rates, strict=True):
+            if size > -_SETTLED * abs(rate) * k and not (beyond and abs(log(k / beyond)) < _NEAR):
+                point = self.leading(k, value)
+                if point.growth > 2 * point.mode.error:
+                    unstable.append(point)
+        return max(unstable, key=lambda point: point.growth / point.k**self.power, default=None)
+
+    def _look(self, value):
+        """Leading growth and rate at all wavenumbers, at the first degree at which the largest growth settles."""
+        solver = self.solver(value)
+        degrees = solver.degrees[self._first:] or solver.degrees
+        for rung, (degree, finer) in enumerate(zip(degrees, (*degrees[1:], degrees[-1]), strict=True), self._first):
+            rates = np.array([finite_rates(solver, degree, solver.symbols(k))[0] for k in self.wavenumbers.tolist()])
+            growth = solver.width(self.wavenumbers) * rates.real
+            best = int(np.argmax(growth))
+            check = finite_rates(solver, finer, solver.symbols(self.wavenumbers[best]))[0]
+            if abs(check - rates[best]) < _DRIFT * abs(check):
+                self._first = rung
+                return growth, rates
+        raise ModeLost(f"{solver.flow}: the least stable modes do not settle up to degree {degrees[-1]}")
+
+    def _check_end(self, value, growth):
+        if growth[-1] > 0 and growth[-1] == max(growth):
+            raise ModeLost(f"{self.solver(value).flow}: growth is largest at k = {self.wavenumbers[-1]:g}, the end of "
+                           "the search; the flow may be ill-posed")
+
+    def bracket(self, value):
+        """An unstable value within a factor 1.5 of a stable one, found by trying further and further from `value`."""
+        value = value or _FIRST
+        known = {}
+        toward = np.sign(self.near_largest(value).by_value.real) or 1.0
+        for side in (1, -1):
+            for factor in (0.0, *(0.1 * 2**j for j in range(6))):
+                grows = self._try(value * exp(factor * side * toward * (-1 if known.get(value, -1) > 0 else 1)), known)
+                if grows is not None and grows != (known.get(value, -1) > 0):
+                    break
+            if len({growth > 0 for growth in known.values()}) == 2:
+                break
+        stable, unstable = _nearest_pair(known) or self._none(known)
+        while max(stable / unstable, unstable / stable) > 1.5:
+            middle = (stable * unstable) ** 0.5
+            stable, unstable = (stable, middle) if self._try(middle, known) else (middle, unstable)
+        return unstable
+
+    def _try(self, value, known):
+        """Whether some wavenumber grows at this value; None where that cannot be found."""
+        try:
+            known[value] = max(self._look(value)[0])
+        except (ParameterError, ModeLost):
+            return None
+        return known[value] > 0
+
+    def _none(self, known):
+        growth = list(known.values())
+        kind = "no growth rate could be computed" if not growth else "stable" if max(growth) < 0 else "unstable"
+        span = f" at every {self.vary} tried from {min(known):.4g} to {max(known):.4g}" if known else ""
+        raise ModeLost(f"{self.flow}: {kind}{span}, k from {self.wavenumbers[0]:g} to {self.wavenumbers[-1]:g}; "
+                       f"start from another {self.vary}")
+
+
+def _nearest_pair(known):
+    """The closest neighbours (stable value, unstable value), or None."""
+    values = sorted(known)
+    pairs = [(a, b) if known[a] < 0 else (b, a) for a, b in zip(values, values[1:], strict=False)
+             if (known[a] < 0) != (known[b] < 0)]
+    return min(pairs, key=lambda pair: abs(pair[0] - pair[1])) if pairs else None
