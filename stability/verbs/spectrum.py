@@ -1,8 +1,10 @@
 """stability spectrum: the least stable modes at one wavenumber."""
 
+from ..relation import dispersion
 from ..specs import parse_spec
 from ..spectra import spectrum
-from .common import add_verb, flow_of, integer, k_option, mode_row, options_of, report
+from ..wellposed import outgrown, well_posedness
+from .common import RESOLVED, add_verb, flow_of, integer, k_option, mode_row, options_of, report
 
 
 def add(verbs):
@@ -21,6 +23,17 @@ def _run(arguments):
 
     def compute():
         found = [spectrum(flow, k, count, strict=False, **options) for k in wavenumbers.tolist()]
-        return [mode_row(mode) for one in found for mode in one.modes], found, []
+        return [mode_row(mode) for one in found for mode in one.modes], found, _warnings(flow, wavenumbers, found)
 
     return report(arguments, flow, compute)
+
+
+def _warnings(flow, wavenumbers, found):
+    """What an ill-posed flow does to its spectrum: modes that do not converge, internal modes that lead it."""
+    strips = well_posedness(flow).strips
+    if not strips:
+        return []
+    notes = [f"{flow}, k = {one.k:g}: the spectrum does not converge; {'; '.join(map(str, strips))}"
+             for one in found if any(mode.status != RESOLVED for mode in one.modes)]
+    faster = outgrown(dispersion(flow, wavenumbers, strict=False)) if flow.has_surface_mode() else None
+    return [*notes, f"{flow}: {faster}"] if faster else notes
