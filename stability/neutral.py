@@ -8,7 +8,7 @@ growth = 0 through the plane of k and the parameter by arclength, past its turni
 """
 
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from math import exp, log
 from typing import Any
 
@@ -25,12 +25,14 @@ _LONG = 1e-9  # wavenumber that stands for 0
 _ITERATIONS = 20
 _SETTLED = 1e-4  # step of the rough Newton iteration below which its last Jacobian serves at full accuracy
 _POLISH = 6
+_ASTRAY = 4.0  # factor in the value beyond which Newton's method is not trusted
 _STRIDE = 1e-4  # in log k, to difference the gradient
 _LARGEST = 0.4  # step of Newton in log k, and relative in the parameter
 _SLOPE_ERROR = 4.0  # error of d sigma/dk in units of error of sigma / k (measured)
 _ARC = 0.02, 0.25  # first and largest step along the curve, in log k and log value
 _TURN = 0.15  # angle between neighbouring tangents at which the step is kept
 _POINTS = 400
+_MARGIN = 1.15  # factor in k beyond the range asked for within which the curve may turn back
 _SPAN = 1e4  # the continuation ends where the value has changed by this factor
 
 
@@ -64,10 +66,11 @@ class NeutralCurve:
     trace: np.ndarray = field(repr=False)
 
 
-def critical(flow, vary, *, tolerance=TOLERANCE, max_degree=DEGREES[-1], strict=True):
+def critical(flow, vary, *, long_wave=False, tolerance=TOLERANCE, max_degree=DEGREES[-1], strict=True):
     """Return the `NeutralPoint` at which the largest growth rate over k is zero as `vary` varies.
 
-    The search starts from the value that the flow has. Raises NotResolved if there is no such value near it;
+    The search starts from the value that the flow has. `long_wave` asks for the threshold as k -> 0, even
+    where waves of finite length grow on its stable side. Raises NotResolved if there is no such value near it;
     with strict=False the record says so in `status`.
 
     >>> from stability.flows import Film
@@ -75,13 +78,13 @@ def critical(flow, vary, *, tolerance=TOLERANCE, max_degree=DEGREES[-1], strict=
     >>> f"{point.value:.9f} at k = {point.k:g}"
     '1.250000000 at k = 0'
     """
-    (point,) = critical_sweep([flow], vary, tolerance=tolerance, max_degree=max_degree)
+    (point,) = critical_sweep([flow], vary, long_wave=long_wave, tolerance=tolerance, max_degree=max_degree)
     if strict and point.status != "resolved":
         raise NotResolved(point.status)
     return point
 
 
-def critical_sweep(flows, vary, *, tolerance=TOLERANCE, max_degree=DEGREES[-1]):
+def critical_sweep(flows, vary, *, long_wave=False, tolerance=TOLERANCE, max_degree=DEGREES[-1]):
     """Yield `critical` of each flow in turn, starting from the value found last; what failed is in its status."""
     last = None
     for flow in flows:
@@ -89,47 +92,50 @@ def critical_sweep(flows, vary, *, tolerance=TOLERANCE, max_degree=DEGREES[-1]):
         if last is not None:
             with suppress(ParameterError):
                 flow = replace(flow, **{vary: last.value})
-        point = _critical(flow, vary, tolerance, max_degree)
+        point = _critical(flow, vary, tolerance, max_degree, long_wave)
         last = point if point.value is not None else last
         yield point
 
 
 def check_parameter_name(flow, name):
-    """Raise a ParameterError unless `name` is a numeric parameter of the flow."""
-    known = [key for key, item in flow.__dataclass_fields__.items() if "options" not in item.metadata]
+    """Return `name` if it is a numeric parameter of the flow, else raise a ParameterError."""
+    known = [item.name for item in fields(flow) if "options" not in item.metadata]
     if name not in known:
-        raise ParameterError(f"{flow.name} has no numeric parameter {name!r}; it has {', '.join(known)}")
+        raise ParameterError(f"{flow.name} has no numeric parameter {name!r} to vary; it has {', '.join(known)}")
+    return name
 
 
 @one_thread
-def _critical(flow, vary, tolerance, max_degree):
+def _critical(flow, vary, tolerance, max_degree, long_wave=False):
     plane = Plane(flow, vary, tolerance, max_degree)
     rough = plane.rough(_ROUGH)
     try:
         threshold = _long_wave_threshold(plane)
+        if long_wave:
+            return threshold or _nothing(flow, vary, 0.0, f"{flow}: no long-wave threshold in {vary}")
         if threshold is None:
-            return _search(plane, rough)
+            return _search(plane, rough, getattr(flow, vary))
         beyond = rough.most_unstable(threshold.value)
-        return _nose(plane, rough, beyond) if beyond else threshold
+        return _search(plane, rough, threshold.value, beyond) if beyond else threshold
     except ModeLost as reason:
         return _nothing(flow, vary, None, str(reason))
 
 
-def _search(plane, rough):
-    """The nose next to the value of the flow; from between a stable and an unstable value where Newton needs it."""
-    value = getattr(plane.flow, plane.vary)
-    try:
-        point = _nose(plane, rough, rough.near_largest(value))
-        if rough.most_unstable(point.value, point.k) is None:
-            return point
-    except (ModeLost, ParameterError, np.linalg.LinAlgError):
-        pass
+def _search(plane, rough, value, point=None):
+    """The nose next to `value`; from between a stable and an unstable value where Newton's method needs it."""
+    with suppress(ModeLost, ParameterError, np.linalg.LinAlgError):
+        nose = _nose(plane, rough, point or rough.near_largest(value))
+        if rough.most_unstable(nose.value, nose.k) is None:
+            return nose
     return _nose(plane, rough, rough.near_largest(rough.bracket(value)))
 
 
 def _nose(plane, rough, point):
     """The nose near `point`: Newton on growth = d growth / d log k = 0, at last with full accuracy."""
+    first = point
     for _ in range(_ITERATIONS):
+        if first.value and not 1 / _ASTRAY < point.value / first.value < _ASTRAY:
+            raise ModeLost(f"{first.mode.flow}: no nose of the neutral curve is near {plane.vary} = {first.value:.6g}")
         jacobian = _jacobian(rough, point)
         step = -np.linalg.solve(jacobian, _equations(rough, point)[0])
         largest = max(abs(step[0]), abs(step[1]) / (abs(point.value) or 1.0))
@@ -275,7 +281,7 @@ def _walk(plane, start, side, low, high):
             continue
         points.append(new)
         tangent, step = direction, min(_ARC[1], step * min(2.0, _TURN / max(turn, 1e-9)))
-        leaving = new.k < low and tangent[0] < 0 or new.k > high and tangent[0] > 0
+        leaving = new.k * _MARGIN < low and tangent[0] < 0 or new.k > high * _MARGIN and tangent[0] > 0
         if leaving or abs(log(new.value / start.value)) > log(_SPAN):
             break
     return points

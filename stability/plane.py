@@ -21,6 +21,7 @@ _DRIFT = 0.05  # of the growth between two degrees, relative to |sigma|, at whic
 _OVERLAP = 0.5
 _HALVINGS = 12
 _FIRST = 0.01  # value tried instead of 0
+_LOW = 6  # rung of the degrees below which no look starts
 _SETTLED = 1e-3  # growth / |sigma| nearer to zero than this, in a look, is computed properly
 
 
@@ -51,7 +52,7 @@ class Plane:
         long_waves = flow.has_surface_mode()
         self.power = 2 if long_waves else 0  # growth of a surface mode is of the order of k^power in long waves
         self.wavenumbers = np.geomspace(0.01, 20, 20) if long_waves else np.geomspace(0.1, 10, 13)
-        self._first = 6  # rung of the degrees at which a look starts
+        self._first = _LOW  # rung of the degrees at which a look starts
         self._value = self._solver = None
 
     def solver(self, value):
@@ -138,7 +139,7 @@ class Plane:
             best = int(np.argmax(growth))
             check = finite_rates(solver, finer, solver.symbols(self.wavenumbers[best]))[0]
             if abs(check - rates[best]) < _DRIFT * abs(check):
-                self._first = rung
+                self._first = max(_LOW, rung - 1)
                 return growth, rates
         raise ModeLost(f"{solver.flow}: the least stable modes do not settle up to degree {degrees[-1]}")
 
@@ -151,13 +152,10 @@ class Plane:
         """An unstable value within a factor 1.5 of a stable one, found by trying further and further from `value`."""
         value = value or _FIRST
         known = {}
-        toward = np.sign(self.near_largest(value).by_value.real) or 1.0
-        for side in (1, -1):
-            for factor in (0.0, *(0.1 * 2**j for j in range(6))):
-                grows = self._try(value * exp(factor * side * toward * (-1 if known.get(value, -1) > 0 else 1)), known)
-                if grows is not None and grows != (known.get(value, -1) > 0):
-                    break
-            if len({growth > 0 for growth in known.values()}) == 2:
+        grows = self._try(value, known)
+        for exponent in (0.2, 0.4, 0.8, 1.6, 3.2):
+            others = (self._try(value * exp(side * exponent), known) for side in (-1, 1))
+            if any(other is not None and other != grows for other in others):
                 break
         stable, unstable = _nearest_pair(known) or self._none(known)
         while max(stable / unstable, unstable / stable) > 1.5:

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from .neutral import NeutralCurve, NeutralPoint
 from .relation import DispersionRelation
 from .wellposed import WellPosedness
 
@@ -19,7 +20,8 @@ BLUE, RED, GREY = "#0b4f8a", "#c0392b", "#7f7f7f"
 
 
 def draw(result, path):
-    """Draw a DispersionRelation, a list of Spectrum, or (name, list of Optimum) into the file `path`."""
+    """Draw a result into the file `path`: a DispersionRelation, a list of Spectrum, a NeutralCurve, or a pair
+    (name of the swept parameter, list of Optimum or NeutralPoint)."""
     import matplotlib
     from matplotlib.figure import Figure
 
@@ -28,10 +30,14 @@ def draw(result, path):
         axes = figure.subplots(1, 2)
         if isinstance(result, DispersionRelation):
             _dispersion(result, *axes)
+        elif isinstance(result, NeutralCurve):
+            _neutral_curve(result, *axes)
         elif isinstance(result, list):
             _spectra(result, figure, axes)
         elif isinstance(result[0], WellPosedness):
             _well_posedness(*result, *axes)
+        elif isinstance(result[1][0], NeutralPoint):
+            _neutral_points(*result, *axes)
         else:
             _optima(*result, *axes)
         figure.suptitle(_caption(result), fontsize=8, color=GREY)
@@ -41,6 +47,8 @@ def draw(result, path):
 def _caption(result):
     if isinstance(result, DispersionRelation):
         return f"{result.flow}, {result.mode} mode"
+    if isinstance(result, NeutralCurve):
+        return str(result.flow)
     if isinstance(result, list) or isinstance(result[0], WellPosedness):
         return str(result[0].flow)
     return str(result[1][0].flow)
@@ -111,3 +119,24 @@ def _well_posedness(found, growth, left, right):
 
 def _spans_decades(values):
     return max(values) > 20 * min(values)
+
+
+def _neutral_curve(curve, left, right):
+    known = [point for point in curve.points if point.value is not None]
+    k, value = curve.trace.T
+    left.plot(k, value, color=BLUE)
+    left.plot([point.k for point in known], [point.value for point in known], ".", color=BLUE, markersize=5)
+    right.plot([point.k for point in known], [point.phase_speed for point in known], ".", color=BLUE, markersize=5)
+    left.set(xlabel="wavenumber $k$", ylabel=f"{curve.vary} at zero growth",
+             xscale="log" if _spans_decades(k) else "linear", yscale="log" if _spans_decades(value) else "linear")
+    right.set(xlabel="wavenumber $k$", ylabel="phase speed $c_r$", xscale=left.get_xscale())
+
+
+def _neutral_points(name, points, left, right):
+    known = [point for point in points if point.value is not None]
+    x = [getattr(point.flow, name) if name else 0.0 for point in known]
+    scale = "log" if len(x) > 1 and min(x) > 0 and _spans_decades(x) else "linear"
+    left.plot(x, [point.value for point in known], ".-", color=BLUE, markersize=4)
+    right.plot(x, [point.k for point in known], ".-", color=BLUE, markersize=4)
+    left.set(xlabel=name or "", ylabel=f"{points[0].vary} at zero growth", xscale=scale)
+    right.set(xlabel=name or "", ylabel="wavenumber $k$ (0: long waves)", xscale=scale)

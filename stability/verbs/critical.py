@@ -1,0 +1,40 @@
+"""stability critical: the value of a parameter at which a flow becomes unstable."""
+
+from .common import add_verb, flow_of, options_of, report
+
+
+def add(verbs):
+    add_verb(verbs, "critical", _run, "the value of a parameter at which the first wavenumber becomes unstable",
+             "stability critical poiseuille --vary Re", vary_option, long_wave_option)
+
+
+def vary_option(verb):
+    verb.add_argument("--vary", required=True, metavar="NAME",
+                      help="parameter to solve for; the search starts from its value")
+
+
+def long_wave_option(verb):
+    verb.add_argument("--long-wave", action="store_true",
+                      help="the threshold as k -> 0, even where waves of finite length grow on its stable side")
+
+
+def _run(arguments):
+    from ..neutral import check_parameter_name, critical
+
+    flow, options = flow_of(arguments), options_of(arguments)
+    vary = check_parameter_name(flow, arguments.vary.replace("-", "_"))
+
+    def compute():
+        point = critical(flow, vary, long_wave=arguments.long_wave, strict=False, **options)
+        row = neutral_row(point)
+        status = row.pop("status")
+        return [{**row, "k_error": point.k_error, "status": status}], (None, [point]), []
+
+    return report(arguments, flow, compute)
+
+
+def neutral_row(point, swept=None):
+    """The row of a neutral point, headed by the swept parameter if there is one."""
+    row = {swept: getattr(point.flow, swept)} if swept else {}
+    return {**row, "k": point.k, point.vary: point.value, "phase_speed": point.phase_speed, "error": point.error,
+            "status": point.status}

@@ -1,0 +1,60 @@
+"""stability neutral: where growth vanishes, over a second parameter or over wavenumbers."""
+
+from ..errors import ParameterError
+from ..specs import parse_spec
+from .common import SPEC, add_verb, flow_of, options_of, progress, report, sweep_of
+from .critical import long_wave_option, neutral_row, vary_option
+
+
+def add(verbs):
+    add_verb(verbs, "neutral", _run, "the value of a parameter at which growth vanishes, over another or over k",
+             "stability neutral poiseuille --vary Re --k 0.8:1.09:30:lin --plot neutral.png",
+             vary_option, _over_or_k_option, long_wave_option)
+
+
+def _over_or_k_option(verb):
+    either = verb.add_mutually_exclusive_group(required=True)
+    either.add_argument("--over", metavar="NAME=SPEC",
+                        help=f"second parameter: zero growth of the most unstable wavenumber at each value; {SPEC}")
+    either.add_argument("--k", metavar="SPEC", help=f"wavenumbers: all branches of the neutral curve at each; {SPEC}")
+
+
+def _run(arguments):
+    from ..neutral import check_parameter_name
+
+    flow, options = flow_of(arguments), options_of(arguments)
+    vary = check_parameter_name(flow, arguments.vary.replace("-", "_"))
+    if arguments.k is None:
+        return _over(arguments, flow, vary, options)
+    if arguments.long_wave:
+        raise ParameterError("--long-wave: has no meaning with --k; use --over, or the verb critical")
+    return _curve(arguments, flow, vary, options)
+
+
+def _over(arguments, flow, vary, options):
+    from ..neutral import critical_sweep
+
+    name, sweep = sweep_of(arguments, flow)
+    if name == vary:
+        raise ParameterError(f"--over: {name} is the parameter to solve for; sweep another one")
+
+    def compute():
+        found = []
+        for point in critical_sweep(sweep, vary, long_wave=arguments.long_wave, **options):
+            found.append(point)
+            progress(arguments, len(found), len(sweep))
+        return [neutral_row(point, name) for point in found], (name, found), []
+
+    return report(arguments, flow, compute)
+
+
+def _curve(arguments, flow, vary, options):
+    from ..neutral import neutral_curve
+
+    wavenumbers = parse_spec(arguments.k, "--k")
+
+    def compute():
+        curve = neutral_curve(flow, vary, wavenumbers, **options)
+        return [neutral_row(point) for point in curve.points], curve, []
+
+    return report(arguments, flow, compute)
