@@ -116,7 +116,7 @@ def _describe(name: str, flow) -> str:
     lines = [f"{name}: {flow.SUMMARY}"]
     lines += [f"  {parameter.flag:12} {parameter.range:22} {parameter.meaning}" for parameter in flow.PARAMETERS]
     lines += [f"  --regime {regime:15} {limit.summary}; parameters {', '.join(limit.parameters)}; "
-              f"order {limit.lowest} to {limit.available or 'any'}, default {limit.default}"
+              f"order {limit.lowest} to {limit.available}, default {limit.default}"
               for regime, limit in flow.REGIMES.items()]
     return "\n".join(lines)
 
@@ -148,7 +148,8 @@ def _check(arguments) -> int:
     missing = [name for name, value in expansion.parameters.items() if value is None]
     if expansion.gauge.name != "k" or missing:
         problem = f"needs {', '.join('--' + name for name in missing)}" if missing else "is not a series in k"
-        raise BadUsage(f"regime {expansion.regime} {problem}: check takes a regime in powers of k with all parameters given")
+        raise BadUsage(f"regime {expansion.regime} {problem}: "
+                       "check takes a regime in powers of k with all parameters given")
     rows = rows[:, rows[0] <= _largest(arguments, rows[0])]
     k, growth, speed, error = rows
     gap = float(flows.load(arguments.flow).REGIMES[expansion.regime].step)
@@ -222,7 +223,8 @@ def _read_csv(name: str):
         rows = sorted((*(float(row[column]) for column in columns), float(row.get("error") or 0))
                       for row in reader if row.get("status", "resolved") == "resolved")
     except (TypeError, ValueError):
-        raise BadUsage(f"{_source(name)}: a row is not numbers; give the output of stability dispersion ... --csv") from None
+        raise BadUsage(f"{_source(name)}: a row is not numbers; "
+                       "give the output of stability dispersion ... --csv") from None
     if not rows or rows[0][0] <= 0:
         raise BadUsage(f"{_source(name)} has no resolved row with k > 0; give at least four small wavenumbers")
     return header, np.array(rows).T

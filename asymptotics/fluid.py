@@ -17,10 +17,9 @@ from math import factorial
 
 import sympy as sp
 
-from . import linearise
 from .hierarchy import Hierarchy, Layer, kappa, long_wave
 from .linearise import FIELDS, Linearisation, amplitude, x, z
-from .series import Expansion, k, power_of_i
+from .series import Expansion, power_of_i
 
 Re, depth = sp.symbols("Re depth", positive=True)
 
@@ -237,8 +236,7 @@ def _unbounded_response(mp, k, Re, digits):
             term = integral[-1] * power
             total += term
             quiet, m = (quiet + 1 if abs(term) <= mp.eps * abs(total) else 0), m + 1
-        result = -f * mp.airyai(q * q) / total
-    return result
+        return -f * mp.airyai(q * q) / total
 
 
 def _lid_response(mp, k, Re, depth, digits):

@@ -76,7 +76,7 @@ def long_wave(expression, scale: Mapping[str, int] | None = None):
         expression = expression.subs(substitution)
         return sp.Matrix(4, 4, lambda i, j: expression[i, j] * powers[j] / powers[i])
     return sp.expand(expression.subs(substitution).subs(
-        {symbol: symbol * power for symbol, power in zip(linearise.FIELDS, powers)}, simultaneous=True))
+        {symbol: symbol * power for symbol, power in zip(linearise.FIELDS, powers, strict=True)}, simultaneous=True))
 
 
 class Hierarchy:
@@ -128,7 +128,7 @@ class Hierarchy:
         for layer in self.layers.values():
             layer.particular(order, self.q, self._speed)
         right = [-self._residual(condition, order) for condition in self._conditions]
-        solution = [sum((a * b for a, b in zip(row, right)), self.domain.zero) for row in self._inverse]
+        solution = [sum((a * b for a, b in zip(row, right, strict=True)), self.domain.zero) for row in self._inverse]
         if self.eigenvalue:
             self._speed[order] = solution.pop()
         for layer in self.layers.values():
@@ -263,7 +263,7 @@ class _SolvableLayer:
 
     def add_homogeneous(self, order: int, constants: Sequence) -> None:
         fields = self.solution[order]
-        for constant, solution in zip(constants, self.homogeneous):
+        for constant, solution in zip(constants, self.homogeneous, strict=True):
             for name in self.names:
                 fields[name] = fields[name] + solution[name] * constant
 
@@ -275,7 +275,7 @@ def _domain(layers, conditions, given):
         symbols |= layer.matrix.free_symbols - {layer.x}
         symbols |= {s for (_, point), value in layer.logs.items()
                     for s in sp.Tuple(point, value).free_symbols}
-    for symbol, coefficients in given.items():
+    for coefficients in given.values():
         symbols |= set().union(*(sp.sympify(c).free_symbols for c in coefficients))
     points = {s for symbol in symbols if isinstance(symbol, _EdgeValue)
               for s in symbol.where[2].free_symbols}

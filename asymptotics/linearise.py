@@ -70,7 +70,8 @@ class Linearisation:
         law = self.viscosity(rate, pressure)
         state = {rate: sp.diff(self.velocity, z), pressure: self.pressure}
         laws = {eta: law, eta_rate: sp.diff(law, rate), eta_pressure: sp.diff(law, pressure)}
-        return {U: self.velocity, P: self.pressure} | {name: sp.factor(value.subs(state)) for name, value in laws.items()}
+        known = {U: self.velocity, P: self.pressure}
+        return known | {name: sp.factor(value.subs(state)) for name, value in laws.items()}
 
     def concrete(self, expression: sp.Expr) -> sp.Expr:
         """Put the base state's values in."""
@@ -194,7 +195,10 @@ class Linearisation:
                                 for name, value in base.items() if expression.has(name)})
 
     def system(self, height: sp.Expr = z) -> sp.Matrix:
-        """Matrix M of d(w, u, t, n)/dz = M (w, u, t, n) at z = height; a wave across leaves the down-slope velocity out."""
+        """Matrix M of d(w, u, t, n)/dz = M (w, u, t, n) at z = height.
+
+        The down-slope velocity of a wave across the flow is left out: it follows from the others.
+        """
         direction, normal = (1 if self.across else 0), 2
         coordinate = (x, y)[direction]
         inertia = [self.first_order(self.momentum[i] + self._divergence[i]) for i in (direction, normal)]

@@ -87,7 +87,8 @@ class Expansion:
         coefficients = self.with_parameters(**values).values()
         missing = [name for name, value in self.parameters.items() if value is None and name not in values]
         if any(c is None for c in coefficients.values()):
-            raise StillSymbolic(f"the expansion still depends on {', '.join(missing)}; give values, e.g. {missing[0]}=1")
+            raise StillSymbolic(f"the expansion still depends on {', '.join(missing)}; "
+                                f"give values, e.g. {missing[0]}=1")
         pairs = [(c, float(power)) for power, c in coefficients.items()]
 
         def series(gauge):

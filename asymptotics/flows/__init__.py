@@ -28,9 +28,10 @@ class Regime:
 
     expand      the expansion up to a given power of the gauge
     default     the highest power that is computed unless asked otherwise
-    available   the highest power that has a closed form, or None
+    available   the highest power offered, and `beyond`, why no higher one
     lowest      the power of the leading term
     step        distance between successive powers
+    ignores     parameters of the flow that have no effect here
     accepts     says why a set of parameter values does not belong to the regime, or returns ""
     """
 
@@ -38,10 +39,19 @@ class Regime:
     parameters: tuple[str, ...]
     expand: Callable[[sp.Rational], Expansion]
     default: sp.Rational
-    available: sp.Rational | None = None
+    available: sp.Rational
+    beyond: str = "its integrals are not elementary (dilogarithms)"
     lowest: sp.Rational = sp.Integer(1)
     step: sp.Rational = sp.Integer(1)
+    ignores: tuple[str, ...] = ()
     accepts: Callable[[Mapping], str] = lambda values: ""
+
+    def refusal(self, name: str, values: Mapping) -> str:
+        """Why the values do not belong to this regime; empty if they do."""
+        foreign = [value for value in values if value not in (*self.parameters, *self.ignores)]
+        if foreign:
+            return f"regime {name} takes no {', '.join(foreign)}; it takes {', '.join(self.parameters)}"
+        return self.accepts(values)
 
 
 def names() -> list[str]:
@@ -60,8 +70,8 @@ def regime_for(flow, name: str | None, values: Mapping) -> str:
     if name is not None and name not in flow.REGIMES:
         raise NoSuchFlow(f"no regime {name!r}; the regimes are {', '.join(flow.REGIMES)}")
     candidates = [name] if name else list(flow.REGIMES)
-    reasons = [flow.REGIMES[candidate].accepts(values) for candidate in candidates]
-    for candidate, reason in zip(candidates, reasons):
+    reasons = [flow.REGIMES[candidate].refusal(candidate, values) for candidate in candidates]
+    for candidate, reason in zip(candidates, reasons, strict=True):
         if not reason:
             return candidate
     raise BadParameter(reasons[0])
@@ -90,9 +100,10 @@ def _power(order, name: str, regime: Regime) -> sp.Rational:
         power = sp.Rational(str(order)) if order is not None else regime.default
     except (TypeError, ValueError, ZeroDivisionError):
         raise BadParameter(f"order must be a power such as 2 or 4/3, got {order!r}") from None
-    highest = sp.oo if regime.available is None else regime.available
-    if not regime.lowest <= power <= highest:
-        raise BadParameter(f"order must be between {regime.lowest} and {highest} for regime {name}, got {power}: "
-                           + ("the first term has that power" if power < regime.lowest else
-                              "beyond it the integrals are not elementary (dilogarithms)"))
+    if power < regime.lowest:
+        raise BadParameter(f"order must be at least {regime.lowest} for regime {name}, got {power}: "
+                           "that is the power of the first term")
+    if power > regime.available:
+        raise BadParameter(f"order must be at most {regime.available} for regime {name}, got {power}: "
+                           f"beyond it {regime.beyond}")
     return power

@@ -206,7 +206,7 @@ def _named(coefficient: sp.Expr, response) -> sp.Expr:
     logs = {_LOGS[0]: -sp.log(shields) / 2, _LOGS[1]: sp.log((1 + 1 / sp.sqrt(shields)) / 2)}
     total = sp.Integer(0)
     for powers, c in sp.Poly(numerator, *letters).terms():
-        monomial = sp.Mul(*(letter**power for letter, power in zip(letters, powers)))
+        monomial = sp.Mul(*(letter**power for letter, power in zip(letters, powers, strict=True)))
         total += sp.factor(c * monomial / denominator).subs({**logs, **response})
     return total.subs(r, sp.sqrt(shields))
 
@@ -221,16 +221,19 @@ def _unbounded(values) -> str:
 
 
 _BED = ("shields", "mu1", "b")
+_LEADING = "only the leading order is known"
 
 REGIMES = {
     "boundary-layer": Regime("unbounded fluid, k -> 0 with k^2 << Re (4.81)", (*_BED, "Re"), boundary_layer,
                              default=sp.Integer(2), available=sp.Rational(8, 3), lowest=sp.Rational(4, 3),
                              step=sp.Rational(1, 3),
-                             accepts=_unbounded),
+                             ignores=("depth",), accepts=_unbounded),
     "shallow": Regime("fluid under a lid, k depth -> 0 (4.84)", (*_BED, "Re", "depth"), shallow,
                       default=sp.Integer(2), available=sp.Integer(2), accepts=_needs_depth),
     "small-Re": Regime("unbounded fluid, Re -> 0 with k = kappa sqrt(Re)", (*_BED, "kappa"), small_Re,
-                       default=sp.Integer(1), available=sp.Integer(1), accepts=_unbounded),
+                       default=sp.Integer(1), available=sp.Integer(1),
+                       beyond=_LEADING, ignores=("depth",), accepts=_unbounded),
     "near-yield": Regime("shields = 1 + delta, delta -> 0 at fixed k", ("b", "Re", "depth", "k"), near_yield,
-                         default=sp.Integer(2), available=sp.Integer(2), lowest=sp.Integer(2)),
+                         default=sp.Integer(2), available=sp.Integer(2), beyond=_LEADING, lowest=sp.Integer(2),
+                         ignores=("mu1",)),
 }

@@ -28,6 +28,8 @@ PARAMETERS = (
 tan_slope, Fr2, mu1, mu2 = sp.symbols("tan_slope Fr2 mu1 mu2", positive=True)
 delta = sp.Symbol("delta", positive=True)
 zeta = sp.Symbol("zeta", positive=True)
+NONE = sp.Integer(0)
+_ROOTS = sp.symbols("root_top root_bottom", positive=True)  # sqrt(delta), sqrt(1 + delta)
 
 
 def friction(number: sp.Expr) -> sp.Expr:
@@ -36,7 +38,7 @@ def friction(number: sp.Expr) -> sp.Expr:
 
 
 @cache
-def linear_flow(pressure=sp.Integer(0)) -> Linearisation:
+def linear_flow(pressure=NONE) -> Linearisation:
     """Waves across the flow under the base state (4.10), or (4.26)-(4.27) with a pressure on the surface."""
     depth = 1 + pressure
     return Linearisation(
@@ -49,7 +51,7 @@ def linear_flow(pressure=sp.Integer(0)) -> Linearisation:
     )
 
 
-def surface_conditions(pressure=sp.Integer(0)) -> list[sp.Expr]:
+def surface_conditions(pressure=NONE) -> list[sp.Expr]:
     """No stress but the pressure, along y and z, and the kinematic condition, on the displaced surface."""
     flow = linear_flow(pressure)
     traction = flow.traction()
@@ -69,12 +71,12 @@ def hierarchy(pressure, top: sp.Expr, bottom: sp.Expr) -> Hierarchy:
 
 @cache
 def _free_surface() -> Hierarchy:
-    return hierarchy(sp.Integer(0), sp.Integer(0), sp.Integer(1))
+    return hierarchy(NONE, sp.Integer(0), sp.Integer(1))
 
 
 @cache
 def _loaded_surface() -> Hierarchy:
-    return hierarchy(delta, *sp.symbols("root_top root_bottom", positive=True))
+    return hierarchy(delta, *_ROOTS)
 
 
 @cache
@@ -86,7 +88,7 @@ def long_wave_law(order=6) -> Expansion:
 @cache
 def loaded_law(order=2) -> Expansion:
     """The same with pressure delta on the surface (4.26)-(4.30)."""
-    roots = dict(zip(sp.symbols("root_top root_bottom", positive=True), (sp.sqrt(delta), sp.sqrt(1 + delta))))
+    roots = dict(zip(_ROOTS, (sp.sqrt(delta), sp.sqrt(1 + delta)), strict=True))
     return _even_expansion("delta", _loaded_surface(), order, {"slope_deg": None, "Fr2": None, "delta": None}, roots)
 
 
@@ -98,10 +100,13 @@ def _even_expansion(regime, hierarchy, order, parameters, names) -> Expansion:
     return Expansion("vortex", regime, terms, powers[-1] + 2, parameters)
 
 
+_LONG = "the coefficients fill pages"
+
 REGIMES = {
     "long-wave": Regime("k -> 0, free surface (4.25)", ("slope_deg", "Fr2"), long_wave_law,
-                        default=sp.Integer(6), lowest=sp.Integer(2), step=sp.Integer(2),
-                        accepts=lambda values: "delta belongs to --regime delta" if "delta" in values else ""),
+                        default=sp.Integer(6), available=sp.Integer(20), beyond=_LONG,
+                        lowest=sp.Integer(2), step=sp.Integer(2)),
     "delta": Regime("k -> 0, pressure delta on the surface (4.30)", ("slope_deg", "Fr2", "delta"), loaded_law,
-                    default=sp.Integer(2), lowest=sp.Integer(2), step=sp.Integer(2)),
+                    default=sp.Integer(2), available=sp.Integer(6), beyond=_LONG,
+                    lowest=sp.Integer(2), step=sp.Integer(2)),
 }

@@ -41,7 +41,8 @@ def test_arrays_functions_and_order_of_k():
     backwards = K[::-1]
     assert assert_order(cosine, lambda k: 1 - k**2 / 2, backwards, expected=4).k[0] == K[0]
     shuffled = np.random.default_rng(0).permutation(K)
-    assert assert_order(np.cos(shuffled), 1 - shuffled**2 / 2, shuffled, expected=4).observed == pytest.approx(4, abs=1e-3)
+    comparison = assert_order(np.cos(shuffled), 1 - shuffled**2 / 2, shuffled, expected=4)
+    assert comparison.observed == pytest.approx(4, abs=1e-3)
 
 
 def test_points_below_the_error_are_left_out():

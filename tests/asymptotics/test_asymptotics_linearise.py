@@ -200,8 +200,8 @@ def test_a_broken_coefficient_in_a_bed_equation_shows(name, factor):
 def test_the_interface_conditions_are_those_of_the_thesis():
     """(4.66)-(4.68) with the fluid's stress -R s0 = -Psi''(0)."""
     bed = dune.linear_bed()
-    pressure, stress, kinematic = [
-        sp.expand(stream(bed.concrete(bed.on_surface(condition, 0)), psi, phi)) for condition in dune.interface_conditions()]
+    pressure, stress, kinematic = [sp.expand(stream(bed.concrete(bed.on_surface(condition, 0)), psi, phi))
+                                   for condition in dune.interface_conditions()]
     assert difference(pressure, phi - amplitude, 0) == {}
     printed = b * (sp.diff(psi, z, 2) + k**2 * psi) - (theta + 1) * phi / 2 - theta * dune.R * amplitude
     assert difference(stress, -mu1 * printed, 0) == {}
@@ -240,5 +240,6 @@ def test_stress_form_and_primitive_form_agree():
         for _ in range(2):
             second = {sp.diff(f, z, 2): sp.diff(slope, z) for f, slope in zip(fields, slopes, strict=True)}
             expression = expression.subs(second).doit().subs(replace)
-        expression = expression.subs(dict(zip(fields, sp.symbols("a0:4"), strict=True))).subs(values).subs(z, sp.Rational(-1, 2))
+        letters = dict(zip(fields, sp.symbols("a0:4"), strict=True))
+        expression = expression.subs(letters).subs(values).subs(z, sp.Rational(-1, 2))
         assert sp.simplify(sp.expand(expression)) == 0

@@ -217,10 +217,11 @@ def test_the_fastest_wave_as_Re_vanishes():
 
 # -- what must fail ----------------------------------------------------------------------------------------
 
+BED_CASE = {"shields": 1.5, "mu1": 0.4, "b": 1.0, "Re": 1.0}
 CASES = {
     "vortex": ("vortex", None, {"slope_deg": 30.0, "Fr2": 0.1}, two_decades(0.5), 2),
-    "shallow": ("dune", "shallow", {"shields": 1.5, "mu1": 0.4, "b": 1.0, "Re": 1.0, "depth": 10.0}, two_decades(1e-4), 1),
-    "boundary-layer": ("dune", "boundary-layer", {"shields": 2.0, "mu1": 0.4, "b": 1.0, "Re": 10.0}, two_decades(1e-6), 1 / 3),
+    "shallow": ("dune", "shallow", {**BED_CASE, "depth": 10.0}, two_decades(1e-4), 1),
+    "boundary-layer": ("dune", "boundary-layer", BED_CASE, two_decades(1e-6), 1 / 3),
 }
 
 

@@ -1,0 +1,211 @@
+"""The command line: what it prints, how it refuses, and its meeting with `stability` in a pipe."""
+
+import io
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import sympy as sp
+
+from asymptotics import cli, expand, flows
+from stability.cli import main as stability
+
+ROOT = Path(__file__).parents[2]
+A = ["expand", "dune", "--regime", "shallow", "--shields", "1.5", "--depth", "10", "--mu1", "0.4", "--b", "1"]
+
+
+def run(capsys, *arguments):
+    status = cli.main(list(arguments))
+    out, err = capsys.readouterr()
+    return status, out, err
+
+
+def refused(capsys, *arguments):
+    """The one line on standard error of a command that must be refused."""
+    status, out, err = run(capsys, *arguments)
+    assert status == 2
+    assert out == ""
+    assert len(err.splitlines()) == 1
+    assert err.startswith("asymptotics: ")
+    return err
+
+
+def test_json_with_numbers(capsys):
+    status, out, _ = run(capsys, *A, "--Re", "0.1", "--json")
+    record = json.loads(out)
+    assert status == 0
+    assert list(record) == ["flow", "regime", "gauge", "parameters", "terms", "growth_rate", "phase_speed"]
+    assert (record["flow"], record["regime"], record["gauge"]) == ("dune", "shallow", "k")
+    assert record["parameters"] == {"shields": 1.5, "mu1": 0.4, "b": 1.0, "Re": 0.1, "depth": 10.0}
+    terms = {term["power"]: term for term in record["terms"]}
+    assert terms["2"]["value"] == pytest.approx([-0.0207561449, 0], abs=5e-11)
+    assert complex(sp.sympify(terms["2"]["coefficient"]).evalf()) == pytest.approx(complex(*terms["2"]["value"]))
+    k = sp.Symbol("k")
+    assert float(sp.sympify(record["growth_rate"]).subs(k, 0.1)) == pytest.approx(-0.000207561449, rel=1e-8)
+    assert float(sp.sympify(record["phase_speed"])) == pytest.approx(0.06515307716504658)
+
+
+def test_json_with_symbols(capsys):
+    _, out, _ = run(capsys, "expand", "dune", "--regime", "boundary-layer", "--Re", "1", "--json")
+    record = json.loads(out)
+    assert record["parameters"] == {"shields": None, "mu1": None, "b": None, "Re": 1.0}
+    assert [term["power"] for term in record["terms"]] == ["4/3", "5/3", "2"]
+    assert record["terms"][0]["value"] is None
+    assert record["terms"][1]["value"] == [0.0, 0.0]
+
+
+@pytest.mark.parametrize("flow", flows.names())
+def test_every_regime_is_written_in_every_form(capsys, flow):
+    for regime in flows.load(flow).REGIMES:
+        for form in ([], ["--json"], ["--latex"]):
+            status, out, err = run(capsys, "expand", flow, "--regime", regime, *form)
+            assert (status, err) == (0, "")
+            assert out.strip()
+
+
+def test_order_and_default_regime(capsys):
+    _, out, _ = run(capsys, "expand", "vortex", "--order", "4", "--slope-deg", "45", "--Fr2", "0", "--json")
+    record = json.loads(out)
+    assert [(term["power"], term["coefficient"]) for term in record["terms"]] == [("2", "-2/5"), ("4", "38/81")]
+    assert expand("dune", depth=5).regime == "shallow"
+    assert expand("dune", depth="inf").regime == expand("dune").regime == "boundary-layer"
+    assert expand("vortex", delta=0.1).regime == "delta"
+
+
+@pytest.mark.parametrize(("arguments", "words"), [
+    (["expand", "dune", "--shields", "0.8"], ["shields", "> 1", "0.8", "yield"]),
+    (["expand", "dune", "--shields", "nan"], ["shields", "nan"]),
+    (["expand", "dune", "--shields", "inf"], ["shields", "inf"]),
+    (["expand", "dune", "--Re", "abc"], ["Re", "abc", "--Re"]),
+    (["expand", "dune", "--Re", "-3"], ["Re", "> 0", "-3"]),
+    (["expand", "vortex", "--slope-deg", "90"], ["slope_deg", "90"]),
+    (["expand", "vortex", "--shields", "2"], ["no parameter shields", "slope_deg"]),
+    (["expand", "vortx"], ["vortx", "did you mean 'vortex'"]),
+    (["expand", "dune", "--regime", "deep"], ["deep", "boundary-layer"]),
+    (["expand", "dune", "--regime", "shallow", "--depth", "inf"], ["depth", "finite"]),
+    (["expand", "dune", "--regime", "boundary-layer", "--depth", "3"], ["depth", "inf", "shallow"]),
+    (["expand", "dune", "--regime", "boundary-layer", "--kappa", "3"], ["kappa", "boundary-layer"]),
+    (["expand", "dune", "--order", "3"], ["order", "8/3", "3", "dilogarithms"]),
+    (["expand", "dune", "--order", "1"], ["order", "4/3", "1"]),
+    (["expand", "dune", "--order", "two"], ["order", "two"]),
+    (["expand", "vortex", "--order", "99"], ["order", "99"]),
+    (["expand"], ["FLOW", "--help"]),
+    ([], ["VERB", "--help"]),
+    (["expand", "dune", "--json", "--latex"], ["--latex"]),
+    (["flows", "film2"], ["film2", "dune"]),
+    (["check", "dune", "/no/such/file"], ["/no/such/file", "stability dispersion"]),
+    (["check", "dune", str(ROOT)], [str(ROOT)]),
+])
+def test_bad_input_is_one_line(capsys, arguments, words):
+    line = refused(capsys, *arguments)
+    assert all(word in line for word in words), line
+
+
+# -- check ------------------------------------------------------------------------------------------------
+
+
+def piped(capsys, monkeypatch, numerics, *arguments):
+    assert stability(["dispersion", *numerics, "--csv"]) == 0
+    monkeypatch.setattr(sys, "stdin", io.StringIO(capsys.readouterr().out))
+    return run(capsys, "check", *arguments)
+
+
+@pytest.mark.parametrize(("numerics", "flow"), [
+    (["dune", "--depth", "10", "--Re", "1", "--k", "1e-6:1e-4:7"], "dune"),
+    (["dune", "--Re", "3", "--k", "1e-8:1e-6:9"], "dune"),
+    (["vortex", "--k", "1e-2:1:13"], "vortex"),
+])
+def test_the_two_programs_meet_in_a_pipe(capsys, monkeypatch, numerics, flow):
+    status, out, err = piped(capsys, monkeypatch, numerics, flow)
+    assert (status, err) == (0, "")
+    assert "agrees with the expected" in out.splitlines()[-1]
+
+
+def test_a_wrong_parameter_is_found(capsys, monkeypatch):
+    numerics = ["dune", "--depth", "10", "--Re", "1", "--k", "1e-6:1e-4:7"]
+    for wrong in (["--Re", "1.01"], ["--b", "1.01"], ["--shields", "2.02"]):
+        status, out, err = piped(capsys, monkeypatch, numerics, "dune", *wrong)
+        assert status == 3
+        assert len(err.splitlines()) == 1
+        assert "differs from the expected" in err
+        assert "slope" in out.splitlines()[0]
+
+
+@pytest.mark.parametrize(("text", "words"), [
+    ("", ["column", "k"]),
+    ("k,growth_rate\n1,2\n", ["phase_speed"]),
+    ("k,growth_rate,phase_speed\n1,x,3\n", ["numbers"]),
+    ("k,growth_rate,phase_speed\n", ["four small wavenumbers"]),
+    ("# flow: vortex\nk,growth_rate,phase_speed\n1,2,3\n", ["vortex", "dune"]),
+    ("k,growth_rate,phase_speed\n1e-3,2,3\n", ["--shields"]),
+    ("# shields: 0.5\nk,growth_rate,phase_speed\n1e-3,2,3\n", ["shields", "> 1"]),
+    ("# shields: 2\n# mu1: 0.4\n# b: 1\n# Re: 1\nk,growth_rate,phase_speed\n1e-3,2,3\n", ["4 are needed"]),
+])
+def test_bad_numerics_are_one_line(capsys, monkeypatch, text, words):
+    monkeypatch.setattr(sys, "stdin", io.StringIO(text))
+    line = refused(capsys, "check", "dune")
+    assert all(word in line for word in words), line
+
+
+def test_options_of_check(capsys, monkeypatch):
+    assert "tolerance" in refused(capsys, *two_rows(monkeypatch), "--tolerance", "-1")
+    assert "--k-max" in refused(capsys, *two_rows(monkeypatch), "--k-max", "x")
+    assert "takes no shields" in refused(capsys, *two_rows(monkeypatch), "--regime", "near-yield")
+
+
+def two_rows(monkeypatch):
+    text = "# shields: 2\n# mu1: 0.4\n# b: 1\n# Re: 1\nk,growth_rate,phase_speed\n1e-3,2,3\n1e-2,2,3\n"
+    monkeypatch.setattr(sys, "stdin", io.StringIO(text))
+    return ["check", "dune"]
+
+
+# -- as a program -------------------------------------------------------------------------------------------
+
+
+def program(*arguments, **options):
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    return subprocess.run([sys.executable, "-m", "asymptotics", *arguments], cwd=ROOT, env=environment, check=False,
+                          capture_output=True, text=True, **options)
+
+
+def test_as_a_program():
+    assert program("--version").stdout.startswith("asymptotics ")
+    listing = program("flows")
+    assert listing.returncode == 0
+    assert all(name in listing.stdout for name in ("vortex", "dune", "--slope-deg", "--Fr2", "near-yield"))
+    failed = program("expand", "dune", "--shields", "1")
+    assert (failed.returncode, failed.stdout, len(failed.stderr.splitlines())) == (2, "", 1)
+
+
+def test_a_broken_pipe_is_quiet():
+    command = f"{sys.executable} -m asymptotics flows | true"
+    done = subprocess.run(["bash", "-c", command], cwd=ROOT, env={**os.environ, "PYTHONPATH": str(ROOT)}, check=False,
+                          capture_output=True, text=True)
+    assert done.stderr == ""
+
+
+def test_interruption(monkeypatch, capsys):
+    def interrupted(arguments):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(cli, "_flows", interrupted)
+    assert cli.main(["flows"]) == 130
+    assert capsys.readouterr().err == "asymptotics: interrupted\n"
+
+
+def test_what_is_imported():
+    """sympy is all that a start needs."""
+    script = "import sys, asymptotics.cli; print(sorted({'numpy', 'scipy', 'matplotlib'} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=True,
+                          env={**os.environ, "PYTHONPATH": str(ROOT)})
+    assert done.stdout.strip() == "[]"
+
+
+def test_neither_package_imports_the_other():
+    for package, other in (("asymptotics", "stability"), ("stability", "asymptotics")):
+        for source in (ROOT / package).rglob("*.py"):
+            lines = source.read_text().splitlines()
+            assert not [line for line in lines if line.strip().startswith((f"import {other}", f"from {other}"))]
