@@ -101,8 +101,9 @@ class Plane:
             mode = solver.solve(k, (old.sigma + change) / solver.width(k), vectors, degree)
         except ModeLost:
             return None
-        x, y = transfer(solver, vectors, mode.degree)
-        overlap = np.vdot(y, mode.bx) * np.vdot(mode.by, x)
+        _, y = transfer(solver, vectors, mode.degree)
+        _, y_back = transfer(solver, (mode.degree, mode.x, mode.y), old.degree)
+        overlap = np.vdot(y, mode.bx) * np.vdot(y_back, old.bx)  # 1 for one mode, 0 for two
         return self._point(k, value, mode) if abs(overlap - 1) < _OVERLAP else None
 
     def _point(self, k, value, mode):
