@@ -57,15 +57,33 @@ def _transform(count):
     return matrix
 
 
-def product(series, rows, columns):
-    """Matrix (rows, columns) that multiplies T-coefficients by the function with this T-series.
+def entries(series, count, degree, slopes=False):
+    """Non-zero entries of the matrix from basis coefficients a_j to T-coefficients of series * f (or df/ds).
 
-    From T_i T_m = (T_{i+m} + T_{|i-m|}) / 2.
+    Returns rows, columns, values (entries,) of the matrix (count, degree+1). Only the band that a series of
+    finite length leaves is visited: the cost is proportional to count times that length.
     """
-    half = np.zeros(max(rows + columns, len(series)), dtype=series.dtype)
-    half[: len(series)] = series / 2
+    length = len(np.trim_zeros(series, "b"))
+    offset = np.arange(-length - 1, length + 2)
+    row = np.repeat(np.arange(count), len(offset))
+    column = row + np.tile(offset, count)
+    inside = (column >= 0) & (column <= degree)
+    row, column = row[inside], column[inside]
+    if slopes:
+        value = np.where(column > 0, 2 * _product(series, row, column - 1), 0)
+    else:
+        j = np.maximum(column, 1)
+        value = np.where(column > 1, 0.5 / j, 1.0) * _product(series, row, column)
+        value -= np.where(column > 2, 0.5 / np.maximum(j - 2, 1), 0.0) * _product(series, row, column - 2)
+    found = value != 0
+    return row[found], column[found], value[found]
+
+
+def _product(series, row, column):
+    """Entries of the matrix that multiplies T-coefficients by a series: T_i T_m = (T_{i+m} + T_{|i-m|}) / 2."""
+    half = np.zeros(len(series) + 1, series.dtype)
+    half[:-1] = series / 2
     half[0] = series[0]
-    row, column = np.ogrid[:rows, :columns]
-    matrix = half[np.abs(row - column)] + half[row + column]
-    matrix[0] /= 2
-    return matrix
+    column = np.maximum(column, 0)
+    difference, total = (np.minimum(index, len(series)) for index in (np.abs(row - column), row + column))
+    return (half[difference] + half[total]) * np.where(row == 0, 0.5, 1.0)

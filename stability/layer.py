@@ -32,7 +32,8 @@ FIELDS = ("v", "w", "t", "n")
 class Profile:
     """Base flow at the points s of a layer: arrays of the shape of s, or numbers.
 
-    `dz` is the slope dz/ds of the map from 0 <= s <= 1 to the layer; `dg` is dg/ds.
+    `dz` is the slope dz/ds of the map from 0 <= s <= 1 to the layer; `dg` is dg/ds. The shear-rate
+    equation is multiplied by `clear`, so that its coefficients become polynomials and its matrix banded.
     """
 
     dz: Any
@@ -44,6 +45,7 @@ class Profile:
     alpha: Any = 0.0
     g: Any = 1.0
     dg: Any = 0.0
+    clear: Any = 1.0
 
 
 @dataclass(frozen=True)
@@ -74,7 +76,8 @@ def residuals(base, k, rate, fields, slopes, order):
     u = base.g * v
     p = 2 * width * (base.eta * u) - n
     return (
-        base.g * dv + base.dg * v - base.dz / base.beta * (t + 1j * base.alpha * p) + base.dz * (k**2 * w),
+        base.clear * (base.g * dv + base.dg * v - base.dz / base.beta * (t + 1j * base.alpha * p)
+                      + base.dz * (k**2 * w)),
         dw - base.dz * u,
         dt - base.dz * (convection * u - 1j * base.rho * base.dU * (k * w) - k ** (1 - order) * n
                         + 4 * k**2 * (base.eta * u)),

@@ -14,19 +14,20 @@ from math import sqrt
 from typing import Any
 
 import numpy as np
-from scipy.linalg import lapack
 
+from .bordered import Factors
 from .errors import ModeLost, NotResolved, ParameterError
 from .pencil import Pencil
 from .system import System
 
-DEGREES = (8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 128, 160, 192, 256)
+DEGREES = (8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 128, 160, 192, 256, 320,
+           384, 512)
 TOLERANCE = 1e-10  # default bound on error / |sigma| for a resolved mode
 
 _EPS = np.finfo(float).eps
 _ROUNDING = 3.0  # standard deviations of the accumulated rounding that the error bar spans
 _FACTORISATIONS = 12
-_LU = {"f": (lapack.dgetrf, lapack.dgetrs), "c": (lapack.zgetrf, lapack.zgetrs)}
+_TINY = np.finfo(float).tiny
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,7 @@ class Mode:
     `sigma` complex growth rate, `error` bound of its absolute error, `slope` d sigma/dk, `truncation` and
     `rounding` the parts of the error, `degree` of the series, `status` "resolved" or what failed. `x`, `y`
     (size,) hold the right and left eigenvector in the pencil of that degree, with y^H B x = 1; `bx` and
-    `by` are B x and B^H y.
+    `by` are B x and y^H B.
     """
 
     flow: Any
@@ -117,6 +118,9 @@ class Solver:
             self.prepare(np.array([k], dtype=float))
         return self._symbols[float(k)]
 
+    def weights(self, k, degree):
+        return self.pencil(degree).weights(self.symbols(k))
+
     def width(self, k):
         """sigma / rate at wavenumber k."""
         return k ** (1 + self.flow.order)
@@ -131,7 +135,7 @@ class Solver:
         for degree in self.degrees[start:]:
             pencil = self.pencil(degree)
             x, y = transfer(self, vectors, degree) if vectors else (None, None)
-            eigen = _refine(pencil, pencil.weights(self.symbols(k)), rate, x, y)
+            eigen = _refine(pencil, self.weights(k, degree), rate, x, y)
             mode = self._mode(k, degree, eigen)
             if mode.truncation <= max(mode.rounding, self.margin * self.tolerance * abs(mode.sigma)):
                 break
@@ -185,9 +189,9 @@ def transfer(solver, vectors, degree):
 
 def _fit(vector, source, target, size):
     fitted = np.zeros(size, vector.dtype)
-    for name, block in source.items():
-        count = min(block.stop - block.start, target[name].stop - target[name].start)
-        fitted[target[name].start: target[name].start + count] = vector[block.start: block.start + count]
+    for name, places in source.items():
+        count = min(len(places), len(target[name]))
+        fitted[target[name][:count]] = vector[places[:count]]
     return fitted
 
 
@@ -206,23 +210,20 @@ class _Eigen:
 
 def _refine(pencil, weights, rate, x, y):
     """Two-sided inverse iteration from `rate` (and vectors, if known) until the quotient has settled."""
-    a, b = pencil.pair(weights)
-    if pencil.real and np.imag(rate) == 0:
-        rate = float(np.real(rate))
+    b = pencil.b(weights)
     x = _start(pencil.size) if x is None else x
-    y = _start(pencil.size) if y is None else y.conj()  # y^T from here on: a row vector
-    if pencil.real and np.isrealobj(rate):
-        x, y = x.real, y.real
+    y = _start(pencil.size) if y is None else y.conj()  # y^H, a row vector, from here on
+    if pencil.real and np.imag(rate) == 0:
+        rate, x, y = float(np.real(rate)), x.real, y.real
     for _ in range(_FACTORISATIONS):
-        matrix = a - rate * b
-        getrf, getrs = _LU[matrix.dtype.kind]
-        lu, pivots, info = getrf(matrix.T, overwrite_a=True)  # of the transpose: LAPACK's order without a copy
-        if info:
-            rate = rate * (1 + 4 * _EPS) + 1e-300
+        try:
+            lu = Factors(pencil.shifted(weights, rate))
+        except np.linalg.LinAlgError:
+            rate = rate * (1 + 4 * _EPS) + _TINY
             continue
-        x, x_error = _iterate(lambda v: getrs(lu, pivots, b @ v, trans=1)[0], x)  # noqa: B023
-        y, y_error = _iterate(lambda v: getrs(lu, pivots, v @ b)[0], y)  # noqa: B023
-        eigen = _quotient(pencil, weights, x, y.conj(), b)
+        x, x_error = _iterate(lambda v: lu.solve(b @ v), x)  # noqa: B023
+        y, y_error = _iterate(lambda v: lu.solve_left(v @ b), y)  # noqa: B023
+        eigen = _quotient(pencil, weights, x, y, b)
         if not np.isfinite(eigen.rate):
             break
         if x_error * y_error < 0.1 * _EPS and max(x_error, y_error) < 1e-6:
@@ -235,19 +236,19 @@ def _start(size):
     return np.random.default_rng(1).standard_normal(size)
 
 
-def _iterate(solve, vector):
+def _iterate(step, vector):
     """Two inverse iterations with one factorisation; return the vector and an estimate of its error.
 
     Vectors are scaled by one component. The second step shrinks what the first one changed by the
     ratio of the distances to the wanted and the next eigenvalue, and so will the next.
     """
     pivot = np.argmax(np.abs(vector))
-    first = solve(vector)
+    first = step(vector)
     first = first / first[pivot]
-    second = solve(first)
+    second = step(first)
     second = second / second[pivot]
     change = _norm(second - first)
-    ratio = change / (_norm(first - vector / vector[pivot]) + 1e-300)
+    ratio = change / (_norm(first - vector / vector[pivot]) + _TINY)
     return second, min(1.0, ratio) * change / _norm(second) + _EPS
 
 
@@ -256,24 +257,23 @@ def _norm(vector):
 
 
 def _quotient(pencil, weights, x, y, b):
-    """Rayleigh quotient of the pair, its slope in k and its errors."""
-    parts = pencil.apply(pencil.stack, x)
-    c = parts @ y.conj()
-    value, first = weights.value * c, pencil.first_b
-    norm = -value[first:].sum()  # y^H B x
+    """Rayleigh quotient of the pair (y a row vector), its slope in k and its errors."""
+    first = pencil.first_b
+    rows = pencil.matrices.left(y)  # (parts, size)
+    c = rows @ x
+    value = weights.value * c
+    norm = -value[first:].sum()  # y B x
     rate = value[:first].sum() / norm
-    power = np.ones(len(c), dtype=np.result_type(rate))
-    power[first:] = rate
-    y = y / np.conj(norm)
+    power = pencil.powers(rate)
+    y = y / norm
     slope = (weights.slope * c * power).sum() / norm
     spread = (weights.spread * np.abs(c * power)).sum() / abs(norm)
-    factors = np.abs(weights.value * power)
-    variance = (factors**2 @ pencil.apply(pencil.squares, np.abs(x) ** 2)) @ np.abs(y) ** 2  # of matrix entries
+    entries = pencil.squares.combine(np.abs(weights.value * power) ** 2)
+    variance = entries.left(np.abs(y) ** 2) @ np.abs(x) ** 2  # of matrix entries
     variance += (np.abs(value * power) ** 2).sum() / abs(norm) ** 2  # of the weights, common to a part
-    beyond = np.abs((weights.value * power) @ pencil.apply(pencil.tail, x)).reshape(len(pencil.last), -1).sum(axis=1)
+    beyond = np.abs(pencil.beyond(weights.value * power, x)).reshape(len(pencil.last), -1).sum(axis=1)
     truncation = beyond @ np.abs(y[pencil.last]).max(axis=1)
-    return _Eigen(rate, slope, truncation, _EPS * np.sqrt(variance), spread, x, y,
-                  b @ x, (y.conj() @ b).conj())
+    return _Eigen(rate, slope, truncation, _EPS * np.sqrt(variance), spread, x, y.conj(), b @ x, y @ b)
 
 
 def _symbols(k, functions):

@@ -6,14 +6,19 @@ sensitivity to a symbol then cost a few products. Rows are T-coefficients of the
 of a first-order equation, one more where its leading coefficient vanishes at an edge, then the
 conditions. The coefficients beyond (the tail) are what the truncated series fails to satisfy; they
 measure the truncation error.
+
+Coefficient j of a field stands opposite row j - 1 of its equation, the fields of a layer interleaved, so that
+the matrices are banded. What has no row opposite (constants of integration, surfaces) and the conditions
+form the border.
 """
 
 from dataclasses import dataclass
-from math import prod
 
 import numpy as np
 
 from . import chebyshev
+from .bordered import Bordered, Entries
+from .layer import FIELDS
 
 _TAIL = 8  # coefficients kept beyond the truncation, per equation
 
@@ -33,85 +38,105 @@ class Weights:
 class Pencil:
     """Constant matrices of A(k) - rate B(k) for one system and degree, and where its unknowns lie.
 
-    The residual of the equations is (A - rate B) x. Attributes: `stack` (parts, size, size), `tail`
-    (parts, tail rows, size), `squares` = |stack|^2; the parts from `first_b` on carry the rate and belong
-    to -B. `columns` and `rows` map unknowns and equations to slices; `last` (equations, 2) are the last
-    two rows of each equation; `real` tells whether all matrices are real.
+    The residual of the equations is (A - rate B) x. Attributes: `matrices`, a stack of `parts`; those from
+    `first_b` on carry the rate and belong to -B; `squares`, their squared moduli; `columns` and `rows` map
+    unknowns and equations to index arrays; `last` (equations, 2) are the last two rows of each equation;
+    `real` tells whether all matrices are real.
     """
 
     def __init__(self, system, degree):
         self.degree = degree
-        lengths = dict.fromkeys(system.fields, degree + 1) | dict.fromkeys(system.surfaces, 1)
-        self.columns = _slices(lengths)
-        self.rows = _slices({equation.name: degree + equation.extra for equation in system.equations}
-                            | {"conditions": len(system.conditions)})
-        self.size = sum(lengths.values())
-        equations = [self.rows[equation.name] for equation in system.equations]
-        self.last = np.array([[rows.stop - 2, rows.stop - 1] for rows in equations])
+        self._place(system)
         blocks = [*self._equation_blocks(system), *self._condition_blocks(system)]
         self.parts = tuple(sorted({block[0] for block in blocks}, key=lambda part: ("rate" in part, part)))
         self.first_b = sum("rate" not in part for part in self.parts)
-        full = self._fill(blocks)
-        self.stack = np.ascontiguousarray(full[:, : self.size])
-        self.tail = np.ascontiguousarray(full[:, self.size:])
-        self.squares = np.abs(self.stack) ** 2
-        self.real = np.isrealobj(self.stack)
-        self._factors = tuple(tuple(name for name in part if name != "rate") for part in self.parts)
+        self._symbols = tuple(sorted({name for part in self.parts for name in part} - {"rate"}))
+        self._powers = np.array([[part.count(name) for name in self._symbols] for part in self.parts])
+        entries = [(self.parts.index(monomial), *entry) for monomial, *entry in blocks]
+        self._split_tail(entries, len(system.equations))
+        main = [(part, *_where(rows < self.size, rows, columns, values)) for part, rows, columns, values in entries]
+        self.matrices = Bordered.from_entries(len(self.parts), self.interior, self.size - self.interior, main)
+        self.squares = self.matrices.squared()
+        self._b = Entries([entry for entry in main if entry[0] >= self.first_b], self.size)
+        self.real = np.isrealobj(self.matrices.flat)
+
+    def _place(self, system):
+        """Number unknowns and rows: interior interleaved layer by layer, then the border."""
+        keys, width = [], self.degree + 1
+        for index, (field, equation) in enumerate(zip(system.fields, system.equations, strict=True)):
+            layer, place = divmod(index, len(FIELDS))
+            keys += [(layer, j, place, field, j + equation.extra - 1, equation.name)
+                     for j in range(1 - equation.extra, width)]
+        self.interior = len(keys)
+        self.columns = {field: np.full(width, -1) for field in system.fields}
+        self.rows = {equation.name: np.full(self.degree + equation.extra, -1) for equation in system.equations}
+        for position, (_, j, _, field, row, equation) in enumerate(sorted(keys)):
+            self.columns[field][j] = position
+            self.rows[equation][row] = position
+        self.size = self.interior
+        for name in (*system.fields, *system.surfaces):
+            free = self.columns.setdefault(name, np.full(1, -1)) < 0
+            self.columns[name][free] = self.size
+            self.size += int(free.sum())
+        self.rows["conditions"] = np.arange(self.interior, self.interior + len(system.conditions))
+        self.last = np.array([self.rows[equation.name][-2:] for equation in system.equations])
 
     def _equation_blocks(self, system):
-        """Yield (monomial, rows, columns, matrix) of every term, main rows and tail rows."""
-        values, slopes = chebyshev.basis(self.degree)
+        """Yield (monomial, rows, columns, values) of every term; the tail of an equation follows the main rows."""
         for index, equation in enumerate(system.equations):
-            rows = self.rows[equation.name]
-            count = rows.stop - rows.start
-            tail = slice(self.size + index * _TAIL, self.size + (index + 1) * _TAIL)
+            tail = self.size + index * _TAIL + np.arange(_TAIL)
+            places = np.concatenate((self.rows[equation.name], tail))
             for unknown, monomial, series in equation.terms:
-                left = chebyshev.product(series, count + _TAIL, self.degree + 1)
-                matrix = left @ (slopes if unknown.endswith("'") else values)
-                columns = self.columns[unknown.rstrip("'")]
-                yield monomial, rows, columns, matrix[:count]
-                yield monomial, tail, columns, matrix[count:]
+                rows, columns, values = chebyshev.entries(series, len(places), self.degree, unknown.endswith("'"))
+                yield monomial, places[rows], self.columns[unknown.rstrip("'")][columns], values
 
     def _condition_blocks(self, system):
         ends = chebyshev.at(np.array([0.0, 1.0]), self.degree)
-        for row, terms in enumerate(system.conditions, self.rows["conditions"].start):
+        for row, terms in zip(self.rows["conditions"], system.conditions, strict=True):
             for unknown, monomial, series in terms:
                 name, _, end = unknown.partition("@")
-                yield monomial, row, self.columns[name], series[0] * (ends[int(end)] if end else np.ones(1))
+                columns = self.columns[name]
+                values = series[0] * (ends[int(end)] if end else np.ones(1))
+                yield monomial, np.full(len(columns), row), columns, values
 
-    def _fill(self, blocks):
-        height = self.size + len(self.last) * _TAIL
-        dtype = np.result_type(*(block[3] for block in blocks))
-        full = np.zeros((len(self.parts), height, self.size), dtype)
-        for monomial, rows, columns, matrix in blocks:
-            full[self.parts.index(monomial), rows, columns] += matrix
-        return full
+    def _split_tail(self, entries, equations):
+        """Keep the tail rows: `tail` (parts, tail rows, columns) on the few `tail_columns` that reach them."""
+        tails = [(part, *_where(rows >= self.size, rows - self.size, columns, values))
+                 for part, rows, columns, values in entries]
+        self.tail_columns = np.unique(np.concatenate([columns for _, _, columns, _ in tails]))
+        shape = (len(self.parts), equations * _TAIL, len(self.tail_columns))
+        self.tail = np.zeros(shape, np.result_type(*(values for *_, values in entries)))
+        for part, rows, columns, values in tails:
+            np.add.at(self.tail[part], (rows, np.searchsorted(self.tail_columns, columns)), values)
 
     def weights(self, symbols):
-        """Return the `Weights` for symbols {name: (value, slope, error)} at one wavenumber."""
-        value, slope, spread = [], [], []
-        for names in self._factors:
-            factors = [symbols[name] for name in names]
-            others = [prod(g[0] for g in factors[:i] + factors[i + 1:]) for i in range(len(factors))]
-            value.append(prod(f[0] for f in factors))
-            slope.append(sum(o * f[1] for o, f in zip(others, factors, strict=True)))
-            spread.append(sum(abs(o) * f[2] for o, f in zip(others, factors, strict=True)))
-        return Weights(np.array(value), np.array(slope), np.array(spread))
+        """Return the `Weights` for symbols {name: (value, slope, error)} at one wavenumber; no value may be 0."""
+        table = np.array([symbols[name] for name in self._symbols])
+        value, slope, spread = table.T
+        product = np.prod(value**self._powers, axis=1)
+        return Weights(product, product * (self._powers @ (slope / value)),
+                       np.abs(product) * (self._powers @ np.abs(spread / value)))
 
-    def apply(self, stack, x):
-        """Return every part of `stack` (parts, rows, size) times x: shape (parts, rows)."""
-        return (stack.reshape(-1, self.size) @ x).reshape(len(self.parts), -1)
+    def shifted(self, weights, rate):
+        """Return A - rate B as a bordered band matrix."""
+        return self.matrices.combine(weights.value * self.powers(rate))
+
+    def b(self, weights):
+        """Return B as a sparse matrix with products from either side."""
+        return self._b.combine(-weights.value)
+
+    def beyond(self, weights, x):
+        """Return the residual of x in the tail rows for weighted parts; shape (tail rows,)."""
+        return weights @ (self.tail @ x[self.tail_columns])
+
+    def powers(self, rate):
+        """Factor of every part in the residual: 1 in A, the rate in B; shape (parts,)."""
+        return np.where(np.arange(len(self.parts)) < self.first_b, 1.0, rate)
 
     def pair(self, weights):
-        """Return the dense matrices A and B, each (size, size)."""
-        flat, first = self.stack.reshape(len(self.parts), -1), self.first_b
-        a, b = weights.value[:first] @ flat[:first], weights.value[first:] @ flat[first:]
-        return a.reshape(self.size, -1), -b.reshape(self.size, -1)
+        """Return A and B in full, each (size, size)."""
+        return self.shifted(weights, 0.0).dense(), self.b(weights).dense()
 
 
-def _slices(lengths):
-    slices, start = {}, 0
-    for name, length in lengths.items():
-        slices[name] = slice(start, start + length)
-        start += length
-    return slices
+def _where(mask, *arrays):
+    return tuple(array[mask] for array in arrays)

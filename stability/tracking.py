@@ -152,7 +152,7 @@ class _Walk:
     def _overlap(self, mode):
         """Product of the two biorthogonal overlaps of `mode` with the last one; 1 for the same vectors."""
         x, y = transfer(self.solver, (self.now.degree, self.now.x, self.now.y), mode.degree)
-        return np.vdot(y, mode.bx) * np.vdot(mode.by, x)
+        return np.vdot(y, mode.bx) * (mode.by @ x)
 
     def _cross(self, k):
         """Step across a collision of two real modes (or of a conjugate pair) just ahead; True if there is one.

@@ -30,13 +30,17 @@ def test_edges_and_inner_points():
     np.testing.assert_allclose(chebyshev.at(s, 7) @ coefficients, C.chebval(2 * s - 1, series), atol=1e-14)
 
 
-@pytest.mark.parametrize(("rows", "columns", "length"), [(6, 5, 3), (12, 4, 9), (3, 8, 8)])
-def test_product_multiplies_series(rows, columns, length):
-    factor, field = RNG.standard_normal(length), RNG.standard_normal(columns)
-    expected = np.zeros(rows + columns + length)
-    product = C.chebmul(factor, field)
+@pytest.mark.parametrize(("count", "degree", "length"), [(12, 4, 9), (6, 9, 3), (20, 8, 8), (5, 5, 1)])
+@pytest.mark.parametrize("slopes", [False, True])
+def test_entries_multiply_a_field_or_its_slope_by_a_series(count, degree, length, slopes):
+    factor, field = RNG.standard_normal(length), RNG.standard_normal(degree + 1)
+    expected = np.zeros(count + degree + length)
+    product = C.chebmul(factor, chebyshev.basis(degree)[int(slopes)] @ field)
     expected[: len(product)] = product
-    np.testing.assert_allclose(chebyshev.product(factor, rows, columns) @ field, expected[:rows], atol=1e-13)
+    rows, columns, values = chebyshev.entries(factor, count, degree, slopes)
+    result = np.zeros(count)
+    np.add.at(result, rows, values * field[columns])
+    np.testing.assert_allclose(result, expected[:count], atol=1e-13)
 
 
 def test_coefficients_of_a_polynomial_stop_at_its_degree():

@@ -195,7 +195,9 @@ def test_ctrl_c_stops_a_sweep_at_once():
     time.sleep(3)
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=20)
-    assert (process.returncode, out, err) == (130, "", "stability: interrupted\n")
+    assert process.returncode == 130
+    assert "Traceback" not in err
+    assert all(line.endswith("resolved") for line in out.splitlines()[1:])  # what was done is kept, in whole rows
 
 
 def test_light_verbs_import_no_heavy_packages():

@@ -109,6 +109,7 @@ def bed_profile(s, excess, mu1, b):
         alpha=mu1 * (r**2 + zeta**2) / (2 * zeta**2),
         g=shear_rate,
         dg=excess * (r**2 + zeta**2) / (b * zeta**2),
+        clear=zeta**2,
     )
 
 

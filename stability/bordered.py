@@ -1,0 +1,167 @@
+"""Bordered band matrices: LU, solves from either side and products, in time proportional to the size.
+
+    [ band    right  ]   interior rows
+    [ bottom  corner ]   border rows
+
+The interior is factorised as a band (LAPACK gbtrf); the border follows by block elimination.
+"""
+
+import numpy as np
+from scipy.linalg import lapack
+
+_BAND = {"f": (lapack.dgbtrf, lapack.dgbtrs), "c": (lapack.zgbtrf, lapack.zgbtrs)}
+
+
+class Bordered:
+    """A stack of bordered band matrices of one shape, in one array `flat` (..., entries).
+
+    `band` (..., interior, 2 lower + upper + 1) holds the columns of the band as LAPACK's gbtrf wants them:
+    entry (row, column) at [column, lower + upper + row - column], the first `lower` places being room for
+    fill. `right` is (..., interior, border), `bottom` (..., border, interior + border).
+    """
+
+    def __init__(self, flat, interior, border, lower, upper):
+        self.flat = flat
+        self.interior, self.border, self.lower, self.upper = interior, border, lower, upper
+        shapes = (interior, 2 * lower + upper + 1), (interior, border), (border, interior + border)
+        first, second = interior * (2 * lower + upper + 1), interior * border
+        parts = flat[..., :first], flat[..., first: first + second], flat[..., first + second:]
+        self.band, self.right, self.bottom = (
+            part.reshape(part.shape[:-1] + shape) for part, shape in zip(parts, shapes, strict=True))
+
+    @classmethod
+    def from_entries(cls, count, interior, border, entries):
+        """Build a stack of `count` matrices from entries (part, rows, columns, values), summed where they meet."""
+        inside = [(p, *_where((r < interior) & (c < interior), r, c, v)) for p, r, c, v in entries]
+        shifts = np.concatenate([[0], *(r - c for _, r, c, _ in inside)])
+        lower, upper = int(shifts.max()), int(-shifts.min())
+        total = interior * (2 * lower + upper + 1 + border) + border * (interior + border)
+        stack = cls(np.zeros((count, total), np.result_type(*(v for *_, v in entries))), interior, border, lower, upper)
+        for part, rows, columns, values in inside:
+            np.add.at(stack.band[part], (columns, lower + upper + rows - columns), values)
+        for part, rows, columns, values in entries:
+            r, c, v = _where((rows < interior) & (columns >= interior), rows, columns, values)
+            np.add.at(stack.right[part], (r, c - interior), v)
+            r, c, v = _where(rows >= interior, rows, columns, values)
+            np.add.at(stack.bottom[part], (r - interior, c), v)
+        return stack
+
+    def combine(self, weights):
+        """Return the one matrix sum_p weights[p] * part p."""
+        return self._like(weights @ self.flat)
+
+    def squared(self):
+        """Return the stack of squared moduli of the entries."""
+        return self._like(np.abs(self.flat) ** 2)
+
+    def _like(self, flat):
+        return Bordered(flat, self.interior, self.border, self.lower, self.upper)
+
+    def left(self, y):
+        """Return y^T times every matrix of the stack (no conjugation); shape (..., size)."""
+        inner, border = y[: self.interior], y[self.interior:]
+        padded = np.zeros(self.interior + self.lower + self.upper, y.dtype)
+        padded[self.upper: self.upper + self.interior] = inner
+        width, step = self.lower + self.upper + 1, padded.itemsize
+        windows = np.ndarray((self.interior, width), padded.dtype, padded, 0, (step, step))  # sliding, not copied
+        product = np.concatenate([(self.band[..., self.lower:] * windows).sum(axis=-1), inner @ self.right], axis=-1)
+        return product + border @ self.bottom
+
+    def dense(self):
+        """Return a single matrix in full."""
+        interior = self.interior
+        full = np.zeros((interior + self.border,) * 2, self.flat.dtype)
+        for shift in range(-self.upper, self.lower + 1):
+            columns = np.arange(max(0, -shift), min(interior, interior - shift))
+            full[columns + shift, columns] = self.band[columns, self.lower + self.upper + shift]
+        full[:interior, interior:] = self.right
+        full[interior:] = self.bottom
+        return full
+
+
+class Entries:
+    """Few non-zero entries of a stack of square matrices, ordered for products from either side."""
+
+    def __init__(self, entries, size):
+        """`entries` yields (part, rows, columns, values)."""
+        lists = [(np.full(len(rows), part), rows, columns, values) for part, rows, columns, values in entries]
+        joined = [np.concatenate(arrays) for arrays in zip(*lists, strict=True)] if lists else [np.zeros(0, int)] * 4
+        part, rows, columns, values = joined
+        self._size = size
+        self._by_row = _grouped(rows, columns, part, values)
+        self._by_column = _grouped(columns, rows, part, values)
+
+    def combine(self, weights):
+        """Return the one matrix sum_p weights[p] * part p, for products `matrix @ x` and `y @ matrix`."""
+        orders = self._by_row, self._by_column
+        return _Sparse(*((*places, weights[part] * values) for *places, part, values in orders), self._size)
+
+
+class _Sparse:
+    __array_ufunc__ = None  # let `array @ matrix` come to us
+
+    def __init__(self, by_row, by_column, size):
+        self._by_row, self._by_column, self._size = by_row, by_column, size
+
+    def __matmul__(self, x):
+        return self._sum(x, *self._by_row)
+
+    def __rmatmul__(self, y):
+        return self._sum(y, *self._by_column)
+
+    def _sum(self, vector, places, starts, across, values):
+        total = np.zeros(self._size, np.result_type(vector, values))
+        if len(starts):
+            total[places] = np.add.reduceat(values * vector[across], starts)
+        return total
+
+    def dense(self):
+        places, starts, columns, values = self._by_row
+        full = np.zeros((self._size, self._size), values.dtype)
+        counts = np.diff(np.append(starts, len(values)))
+        np.add.at(full, (np.repeat(places, counts), columns), values)
+        return full
+
+
+def _grouped(places, across, part, values):
+    """Sort by place: the distinct places, where each begins, and the rest in that order."""
+    order = np.argsort(places, kind="stable")
+    distinct, starts = np.unique(places[order], return_index=True)
+    return distinct, starts, across[order], part[order], values[order]
+
+
+class Factors:
+    """LU factors of a single bordered matrix; overwrites its band.
+
+    Raises numpy's LinAlgError where a pivot vanishes.
+    """
+
+    def __init__(self, matrix):
+        self._interior = matrix.interior
+        factor, self._solve = _BAND[matrix.band.dtype.kind]
+        self._lower, self._upper = matrix.lower, matrix.upper
+        self._lu, self._pivots, info = factor(matrix.band.T, matrix.lower, matrix.upper, overwrite_ab=True)
+        if info:
+            raise np.linalg.LinAlgError("singular interior")
+        self._bottom = matrix.bottom[:, : self._interior]
+        self._coupled = self._inner(matrix.right)
+        self._border = np.linalg.inv(matrix.bottom[:, self._interior:] - self._bottom @ self._coupled)
+
+    def solve(self, f):
+        """Return z with M z = f."""
+        inner = self._inner(f[: self._interior])
+        border = self._border @ (f[self._interior:] - self._bottom @ inner)
+        return np.concatenate([inner - self._coupled @ border, border])
+
+    def solve_left(self, g):
+        """Return z with z^T M = g^T (no conjugation)."""
+        inner, border = g[: self._interior], g[self._interior:]
+        border = (border - inner @ self._coupled) @ self._border
+        return np.concatenate([self._inner(inner - border @ self._bottom, trans=1), border])
+
+    def _inner(self, f, trans=0):
+        return self._solve(self._lu, self._lower, self._upper, f, self._pivots, trans=trans)[0]
+
+
+def _where(mask, *arrays):
+    return tuple(array[mask] for array in arrays)
