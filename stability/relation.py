@@ -11,7 +11,7 @@ from .spectra import leading_modes
 from .threads import one_thread
 from .tracking import follow, surface_mode
 
-MODES = ("surface", "most-unstable")
+MODES = ("surface", "leading", "most-unstable")
 
 
 @dataclass(frozen=True)
@@ -61,19 +61,21 @@ class DispersionRelation:
 
 
 @one_thread
-def dispersion(flow, k, mode="surface", *, tolerance=TOLERANCE, max_degree=DEGREES[-1], strict=True):
+def dispersion(flow, k, mode=None, *, tolerance=TOLERANCE, max_degree=DEGREES[-1], strict=True):
     """Return the `DispersionRelation` of a flow at wavenumbers k, a number or a sequence in any order.
 
-    mode="surface" follows the slow surface mode from its long-wave limit; "most-unstable" takes the
-    leading mode of the spectrum at each k. `tolerance` bounds error / |sigma|. Raises NotResolved or
+    mode="surface" follows the slow surface mode from its long-wave limit (the default where the flow has
+    one), "leading" follows the least stable mode of the smallest k (the default elsewhere), and
+    "most-unstable" takes the least stable mode of the spectrum at each k. `tolerance` bounds error / |sigma|. Raises NotResolved or
     ModeLost; with strict=False the record says in `status` and `lost` what failed.
     """
     wavenumbers = check_wavenumbers(k)
+    mode = mode or default_mode(flow)
     if mode not in MODES:
         raise ParameterError(f"mode must be one of {', '.join(MODES)} (got {mode!r})")
     solver = Solver(flow, tolerance, max_degree)
     solver.prepare(wavenumbers)
-    walk = _surface if mode == "surface" else _most_unstable
+    walk = {"surface": _surface, "leading": _leading, "most-unstable": _most_unstable}[mode]
     found, lost, collisions = walk(solver, np.unique(wavenumbers))
     if strict:
         for reason in lost.values():
@@ -84,9 +86,22 @@ def dispersion(flow, k, mode="surface", *, tolerance=TOLERANCE, max_degree=DEGRE
                               tuple(collisions))
 
 
+def default_mode(flow):
+    """The mode that a dispersion relation follows unless told otherwise."""
+    return "surface" if flow.has_surface_mode() else "leading"
+
+
 def _surface(solver, wavenumbers):
+    return _followed(solver, wavenumbers, surface_mode)
+
+
+def _leading(solver, wavenumbers):
+    return _followed(solver, wavenumbers, lambda solver, k: leading_modes(solver, k, 1)[0])
+
+
+def _followed(solver, wavenumbers, first):
     try:
-        path = follow(solver, surface_mode(solver, wavenumbers[0]), wavenumbers)
+        path = follow(solver, first(solver, wavenumbers[0]), wavenumbers)
     except ModeLost as reason:
         return {}, dict.fromkeys(wavenumbers.tolist(), str(reason)), ()
     found = {mode.k: mode for mode in path.modes}
@@ -96,9 +111,8 @@ def _surface(solver, wavenumbers):
 def _most_unstable(solver, wavenumbers):
     found, lost = {}, {}
     for k in wavenumbers.tolist():
-        leading = leading_modes(solver, k, 1)
-        if leading:
-            found[k] = leading[0]
-        else:
-            lost[k] = f"{solver.flow}: no mode settles at k = {k:g}"
+        try:
+            (found[k],) = leading_modes(solver, k, 1)
+        except ModeLost as reason:
+            lost[k] = str(reason)
     return found, lost, ()

@@ -89,7 +89,10 @@ def spectrum(flow, k, modes=10, *, tolerance=TOLERANCE, max_degree=DEGREES[-1], 
 
 
 def leading_modes(solver, k, count):
-    """Return the `count` least stable modes, polished; unresolved ones carry that status."""
+    """Return the `count` least stable modes, polished; unresolved ones carry that status.
+
+    Raises ModeLost where none of them settles.
+    """
     rates, degree = _converged_rates(solver, k, count)
     found = []
     for rate in rates:
@@ -98,6 +101,8 @@ def leading_modes(solver, k, count):
             found.append(mode)
         if len(found) == count:
             break
+    if not found:
+        raise ModeLost(f"{solver.flow}: no mode settles at k = {k:g}")
     return sorted(found, key=lambda mode: -mode.growth_rate)
 
 

@@ -105,7 +105,7 @@ BAD = [
     (("dispersion", "dune", "--k", "abc"), "--k: not a finite number: 'abc'"),
     (("dispersion", "dune", "--k", "nan"), "--k: not a finite number: 'nan'"),
     (("dispersion", "dune"), "required: --k"),
-    (("dispersion", "dune", "--k", "1", "--mode", "fast"), "--mode: must be one of surface, most-unstable"),
+    (("dispersion", "dune", "--k", "1", "--mode", "fast"), "--mode: must be one of surface, leading, most-unstable"),
     (("dispersion", "dune", "--k", "1", "--tolerance", "2"), "--tolerance: must lie in [1e-15, 0.1] (got 2)"),
     (("dispersion", "dune", "--k", "1", "--max-degree", "3"), "--max-degree: must be an integer from 8"),
     (("spectrum", "dune", "--k", "1", "--modes", "0"), "--modes: must be an integer from 1"),

@@ -1,7 +1,7 @@
 """stability dispersion: growth rate and phase speed over wavenumbers."""
 
 from ..errors import ParameterError
-from ..relation import MODES, DispersionRelation, dispersion
+from ..relation import MODES, DispersionRelation, default_mode, dispersion
 from ..specs import parse_spec
 from ..wellposed import outgrown
 from .common import RESOLVED, add_verb, flow_of, k_option, lost_row, mode_row, options_of, progress, report
@@ -15,12 +15,14 @@ def add(verbs):
 
 
 def _mode_option(verb):
-    verb.add_argument("--mode", default=MODES[0], metavar="MODE", help=f"{' or '.join(MODES)} (default {MODES[0]})")
+    verb.add_argument("--mode", metavar="MODE", help=f"one of {', '.join(MODES)}; default: surface where the flow has "
+                      "a slow surface mode, else the leading mode of the smallest k, followed")
 
 
 def _run(arguments):
     flow, options = flow_of(arguments), options_of(arguments)
     wavenumbers = parse_spec(arguments.k, "--k")
+    arguments.mode = arguments.mode or default_mode(flow)
     if arguments.mode not in MODES:
         raise ParameterError(f"--mode: must be one of {', '.join(MODES)} (got {arguments.mode!r})")
     bvp = method_of(arguments, flow, options["tolerance"])
@@ -36,7 +38,7 @@ def _run(arguments):
 def _collocation(flow, wavenumbers, mode, options):
     relation = dispersion(flow, wavenumbers, mode, strict=False, **options)
     found = {mode.k: mode for mode in relation.modes}
-    row = mode_row if mode == MODES[0] else _refusing_row
+    row = _refusing_row if mode == "most-unstable" else mode_row
     rows = [row(found[k]) if k in found else lost_row(k) for k in wavenumbers.tolist()]
     notes = sorted({str(collision) for collision in relation.collisions} | set(relation.lost.values()))
     faster = outgrown(relation)
