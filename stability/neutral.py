@@ -194,19 +194,18 @@ def _long_wave_threshold(plane):
     try:
         old, new = (_long_wave_growth(plane, v) for v in (value, value * 1.01 if value else 0.01))
         for _ in range(_ITERATIONS):
-            if abs(new[1]) <= new[2] or new[0] == old[0]:
-                break
             slope = (new[1] - old[1]) / (new[0] - old[0])
-            target = new[0] - new[1] / slope if slope else np.inf
-            if not np.isfinite(target):
+            if slope == 0:
                 return None
-            limit = 0.5 * abs(new[0]) or 1.0
-            old, new = new, _long_wave_growth(plane, new[0] + float(np.clip(target - new[0], -limit, limit)))
+            step, limit = -new[1] / slope, 0.5 * abs(new[0]) or 1.0
+            old, new = new, _long_wave_growth(plane, new[0] + float(np.clip(step, -limit, limit)))
+            if abs(new[0] - old[0]) < 1e-7 * abs(new[0]) or abs(new[1]) <= new[2]:
+                break
+        else:
+            return None
     except (ModeLost, ParameterError):
         return None
     value, growth, spread, mode = new
-    if abs(growth) > 100 * spread:
-        return None
     error = (abs(growth) + spread) / abs(slope) + 16 * np.finfo(float).eps * abs(value)
     return NeutralPoint(mode.flow, plane.vary, 0.0, value, mode.phase_speed, float(error), 0.0, "resolved")
 

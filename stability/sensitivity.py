@@ -23,11 +23,8 @@ _FORWARD = {0: -25 / 12, 1: 4.0, 2: -3.0, 3: 4 / 3, 4: -1 / 4}
 def parameter_slope(solver, mode, name):
     """Return d sigma / d name of a mode of `solver.flow`, at fixed wavenumber."""
     weights, flows = _neighbours(solver.flow, name)
-    system = _difference(weights, [System(flow) for flow in flows])
-    slope = 0.0
-    if any(equation.terms for equation in system.equations) or any(system.conditions):
-        changes = Pencil(system, mode.degree)
-        slope = _product(mode, changes, changes.weights(solver.symbols(mode.k)))
+    changes = Pencil(_difference(weights, [System(flow) for flow in flows]), mode.degree)
+    slope = _product(mode, changes, changes.weights(solver.symbols(mode.k)))
     if solver.flow.functions:
         slope += _through_functions(solver, mode, weights, flows)
     return solver.width(mode.k) * slope
@@ -71,9 +68,7 @@ def _sum(weights, versions):
     total = []
     for key in keys:
         first, *others = (_padded(table.get(key, np.zeros(1)), length) for table in tables)
-        change = sum(weight * (other - first) for weight, other in zip(weights[1:], others, strict=True))
-        if np.any(change):
-            total.append((*key, change))
+        total.append((*key, sum(weight * (other - first) for weight, other in zip(weights[1:], others, strict=True))))
     return tuple(total)
 
 
