@@ -181,6 +181,7 @@ class Hierarchy:
         targets = sorted((s for s in condition.free_symbols if isinstance(s, _EdgeValue)), key=str)
         series = {symbol: sum(c * _epsilon**j for j, c in enumerate(coefficients))
                   for symbol, coefficients in self.given.items()}
+        condition = sp.expand(condition * kappa**4)  # rescaled fields bring negative powers; only relative ones matter
         expression = sp.expand(condition.subs(series).subs(kappa, _epsilon**self.q))
         poly = sp.Poly(expression, _epsilon, speed, linearise.amplitude, *targets)
         lowest = min(powers[0] for powers in poly.monoms())
