@@ -17,7 +17,7 @@ from math import factorial
 
 import sympy as sp
 
-from .hierarchy import Hierarchy, Layer, kappa, long_wave
+from .hierarchy import Hierarchy, Layer, edge_value, long_wave
 from .linearise import FIELDS, Linearisation, amplitude, x, z
 from .series import Expansion, power_of_i
 
@@ -36,6 +36,7 @@ def wall_conditions() -> list[sp.Expr]:
     return [flow.surface_condition(flow.full_velocity[component], 0) for component in (0, 2)]
 
 
+@cache
 def wall_shear() -> sp.Expr:
     """Velocity gradient along the displaced wall, to first order, in terms of w, u, t, n."""
     flow = fluid()
@@ -57,13 +58,10 @@ def _shallow_hierarchy() -> Hierarchy:
 @cache
 def shallow_coefficient(order: int) -> sp.Expr:
     """Coefficient of (i k)^order in R."""
-    shear = sp.Poly(long_wave(wall_shear()), kappa)
-    (power, gradient), = shear.terms()
-    assert power == (0,)
     hierarchy = _shallow_hierarchy()
-    wall_stress = Layer("fluid", z, None).at(0, FIELDS[2])
-    here = gradient.coeff(FIELDS[2]) * hierarchy.edge(wall_stress, order)
-    return sp.factor(-here - (gradient.coeff(amplitude) if order == 0 else 0))
+    stress = hierarchy.edge(edge_value("fluid", "t", 0), order)
+    displaced = wall_shear().coeff(amplitude) if order == 0 else 0
+    return sp.factor(-wall_shear().coeff(FIELDS[2]) * stress - displaced)
 
 
 @cache

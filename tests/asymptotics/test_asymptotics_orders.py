@@ -215,6 +215,19 @@ def test_the_fastest_wave_as_Re_vanishes():
             assert abs(shift) < 3 * sqrt(Re)
 
 
+@pytest.mark.parametrize(("shields", "sign"), [(2.0, -1), (2.25, -1), (2.35, 1), (3.0, 1)])
+def test_where_the_fastest_wave_does_not_follow_the_law(shields, sign):
+    """Above shields = 2.29 (mu1 = 0.4, b = 1) waves of k = O(1) grow as Re -> 0, at a rate that stays finite.
+
+    The maximum at kappa sqrt(Re) is still there, but no longer the highest.
+    """
+    k = np.geomspace(0.4, 4, 24)
+    growth = [dispersion(flows.Dune(shields=shields, Re=Re), k).growth_rate.max() for Re in (1e-6, 1e-8)]
+    assert np.sign(growth[0]) == sign
+    if sign > 0:
+        assert growth[1] == pytest.approx(growth[0], rel=1e-3)
+
+
 # -- what must fail ----------------------------------------------------------------------------------------
 
 BED_CASE = {"shields": 1.5, "mu1": 0.4, "b": 1.0, "Re": 1.0}
@@ -223,6 +236,21 @@ CASES = {
     "shallow": ("dune", "shallow", {**BED_CASE, "depth": 10.0}, two_decades(1e-4), 1),
     "boundary-layer": ("dune", "boundary-layer", BED_CASE, two_decades(1e-6), 1 / 3),
 }
+
+
+def test_one_percent_in_the_laws_for_small_Re_and_near_yield_fails():
+    Re = two_decades(1e-5)
+    sigma = np.array([dispersion(flows.Dune(shields=1.5, Re=one), sqrt(one)).sigma[0] for one in Re])
+    law = expand("dune", "small-Re", shields=1.5, mu1=0.4, b=1, kappa=1)
+    assert_order(sigma, law, Re)
+    with pytest.raises(OrderMismatch):
+        assert_order(sigma, broken(law, 1), Re)
+    delta = two_decades(1e-3)
+    sigma = np.array([dispersion(flows.Dune(shields=1 + one, Re=1), 1).sigma[0] for one in delta])
+    law = expand("dune", "near-yield", b=1, Re=1, k=1, depth="inf")
+    assert_order(sigma, law, delta)
+    with pytest.raises(OrderMismatch):
+        assert_order(sigma, broken(law, 2), delta)
 
 
 @pytest.mark.parametrize("name", CASES)
