@@ -1,5 +1,6 @@
 """stability spectrum: the least stable modes at one wavenumber."""
 
+from ..energy import condition_numbers
 from ..relation import dispersion
 from ..specs import parse_spec
 from ..spectra import spectrum
@@ -23,9 +24,17 @@ def _run(arguments):
 
     def compute():
         found = [spectrum(flow, k, count, strict=False, **options) for k in wavenumbers.tolist()]
-        return [mode_row(mode) for one in found for mode in one.modes], found, _warnings(flow, wavenumbers, found)
+        return [row for one in found for row in _rows(one)], found, _warnings(flow, wavenumbers, found)
 
     return report(arguments, flow, compute)
+
+
+def _rows(one):
+    """Rows of the modes; `condition` is the condition number of the eigenvalue in the energy norm."""
+    for mode, condition in zip(one.modes, condition_numbers(one.modes).tolist(), strict=True):
+        row = mode_row(mode)
+        status = row.pop("status")
+        yield {**row, "condition": condition, "status": status}
 
 
 def _warnings(flow, wavenumbers, found):
