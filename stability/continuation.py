@@ -45,6 +45,7 @@ _NUDGE = 1e-3  # in log of the parameter, for slopes
 _BEND = 0.1  # error of the trapezoidal rule for a step, relative to its largest slope
 _BEND_FLOOR = 1e-3
 _STEPS = 400
+_SHEAR_STRESS = 2  # index of t(0) among the edge values
 _SAMPLES = 96
 _INSIDE = np.array([0.2, 0.7])
 _LONG_WAVE = 0.03  # agreement of the first mode with the long-wave limit
@@ -65,6 +66,7 @@ class Point:
     sigma: complex
     error: float
     nodes: int
+    unknowns: int
     status: str
 
     @property
@@ -160,7 +162,7 @@ class Problem:
     the amplitudes of other surfaces.
     """
 
-    def __init__(self, flow, k, pivot=0):
+    def __init__(self, flow, k, pivot=_SHEAR_STRESS):
         self.flow, self.k, self.pivot = flow, float(k), pivot
         self.width = k ** (1 + flow.order)
         self.functions = {name: value[0][0] for name, value in flow.evaluate(np.array([self.k])).items()}
@@ -540,7 +542,8 @@ class _Walk:
         status = "resolved" if error <= self.tolerance * abs(fine.rate) else \
             f"error {problem.width * error:.1e} exceeds tolerance with {len(fine.mesh)} nodes"
         sigma = problem.width * fine.rate
-        return Point(problem.flow, problem.k, complex(sigma), float(problem.width * error), len(fine.mesh), status)
+        return Point(problem.flow, problem.k, complex(sigma), float(problem.width * error), len(fine.mesh),
+                     fine.spline.c.shape[-1] * len(fine.mesh), status)
 
     def _advance(self, value):
         """Take one step to the value, or shorten the step."""

@@ -1,0 +1,38 @@
+"""stability compare: all methods on one eigenvalue, their errors and times."""
+
+from ..errors import ParameterError
+from ..specs import parse_spec
+from .common import RESOLVED, add_verb, flow_of, progress, report
+
+
+def add(verbs):
+    add_verb(verbs, "compare", _run, "all methods on one eigenvalue: values, errors, times",
+             "stability compare vortex --k 2 --plot compare.png", _k_option)
+
+
+def _k_option(verb):
+    verb.add_argument("--k", required=True, metavar="K", help="wavenumber")
+
+
+def _run(arguments):
+    flow = flow_of(arguments)
+    k = parse_spec(arguments.k, "--k")
+    if len(k) != 1:
+        raise ParameterError(f"--k: one wavenumber is compared at a time (got {len(k)})")
+
+    def compute():
+        from ..compare import compare
+
+        found = compare(flow, float(k[0]), report=lambda done, total: progress(arguments, done, total))
+        known = found.reference
+        notes = [f"reference: sigma = {known.sigma:.15g}, {known.source}",
+                 *(f"{method}, {setting}: no result" for method, setting in found.failed)]
+        return [_row(one) for one in found.measurements], found, notes
+
+    return report(arguments, flow, compute)
+
+
+def _row(one):
+    return {"method": one.method, "setting": one.setting, "growth_rate": one.sigma.real, "frequency": one.sigma.imag,
+            "error": one.error, "reported": one.reported, "seconds": one.seconds, "unknowns": one.unknowns,
+            "status": RESOLVED}

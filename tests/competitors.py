@@ -1,0 +1,137 @@
+"""What a reader of the usual textbooks writes for the same eigenvalues: collocation at Chebyshev points in z.
+
+    vortex(slope_deg, Fr2, k, n, delta=0)            inclined plane, W and P at n + 1 points, dense QZ
+    dune(shields, mu1, b, Re, k, n, cut=100)         bed in W and P; fluid cut at z = cut / k, D^4 at 2 n points
+    poiseuille(Re, k, n)                             clamped fourth-order collocation
+    cut_response(k, Re, height, n)                   wall stress of a fluid cut at a height
+
+Each returns all finite eigenvalues sigma of exp(i k x + sigma t), or the response. With P and W the
+perturbations of pressure and vertical velocity, a granular layer obeys (from (4.14), (4.15) and their analogues)
+
+    t = beta (i/k) (W'' + k^2 W) + alpha P,     n = -P + 2 eta W',     u = i W'/k,
+    t' = rho [(sigma + i k U) u + U' W] - i k n + 4 k^2 eta u,         n' = rho (sigma + i k U) W - i k t.
+"""
+
+from math import radians, tan
+
+import numpy as np
+from scipy.linalg import eig
+
+
+def chebyshev(n, low, high):
+    """Points (n+1,) from low to high and the differentiation matrix, Trefethen's cheb.m turned round."""
+    x = -np.cos(np.pi * np.arange(n + 1) / n)
+    c = np.r_[2, np.ones(n - 1), 2] * (-1) ** np.arange(n + 1)
+    dx = x[:, None] - x[None, :] + np.eye(n + 1)
+    D = np.outer(c, 1 / c) / dx
+    D -= np.diag(D.sum(axis=1))
+    return low + (high - low) * (x + 1) / 2, 2 * D / (high - low)
+
+
+def finite(A, B):
+    """Eigenvalues of A x = sigma B x that scipy's QZ does not call infinite, by decreasing real part."""
+    values = eig(A, B, right=False)
+    values = values[np.isfinite(values)]
+    return values[np.argsort(-values.real)]
+
+
+def vortex(slope_deg, Fr2, k, n, delta=0.0):
+    """Thesis (4.14), (4.15), (4.17), (4.19), (4.20) at Chebyshev points in z, or with delta (4.26)-(4.29)."""
+    z, D = chebyshev(n, 0, 1)
+    eye, zero = np.eye(n + 1), np.zeros((n + 1, n + 1))
+    inside = slice(1, n)
+    root = np.sqrt(1 + delta - z[inside])
+    T = tan(radians(slope_deg))
+    eta, slope = (T * root)[:, None], (-T / (2 * root))[:, None]
+    D2 = D @ D
+    bend = D2 + k**2 * eye  # W'' + k^2 W
+    bend_slope = D @ bend
+    # k^2 P = [eta bend]' - 2 k^2 eta W' - rho sigma W',   P' = 2 (eta W')' - eta bend - rho sigma W
+    along = eta * bend_slope[inside] + slope * bend[inside] - 2 * k**2 * eta * D[inside]
+    along = np.hstack((along, -k**2 * eye[inside]))
+    across = np.hstack((2 * eta * D2[inside] + 2 * slope * D[inside] - eta * bend[inside], -D[inside]))
+    edges = np.zeros((4, 2 * n + 2))
+    edges[0, : n + 1] = eye[0]
+    edges[1, : n + 1] = D[0]
+    edges[2, : n + 1] = bend[n]
+    edges[3, : n + 1] = eye[n]  # W = sigma (P - 2 sqrt(delta) T W')
+    A = np.vstack((along, across, edges))
+    moving = np.zeros((4, 2 * n + 2))
+    moving[3, n + 1:] = eye[n]
+    moving[3, : n + 1] = -2 * np.sqrt(delta) * T * D[n]
+    B = np.vstack((np.hstack((Fr2 * D[inside], zero[inside])), np.hstack((Fr2 * eye[inside], zero[inside])), moving))
+    return finite(A, B)
+
+
+def dune(shields, mu1, b, Re, k, n, cut=100.0, R=None):
+    """Granular bed (4.52), (4.64)-(4.70) in z, with the fluid cut at z = cut / k as in the thesis, or its R given."""
+    z, D = chebyshev(n, 1 - shields, 0)
+    eye = np.eye(n + 1)
+    inside = slice(1, n)
+    D2 = D @ D
+    p = 1 - z
+    root = np.sqrt(p)
+    dU = (shields - p) / (b * root)  # (4.52); U vanishes at the yield surface
+    U = (2 / 3 * (p**1.5 - shields**1.5) - 2 * shields * (root - np.sqrt(shields))) / b
+    beta, alpha = mu1 * b * root, mu1 * (shields + p) / (2 * p)
+    with np.errstate(divide="ignore"):
+        eta = mu1 * shields / dU
+    beta_t = (1j / k) * beta[:, None] * (D2 + k**2 * eye)
+    stress = np.hstack((beta_t, np.diag(alpha)))  # t on (W, P)
+    columns = 2 * n + 3
+    A, B = np.zeros((2, columns, columns), complex)
+    u = 1j / k * D
+    W, P, s0 = slice(0, n + 1), slice(n + 1, 2 * n + 2), 2 * n + 2
+    # rho (sigma + i k U) u = t' - U' W + i k n - 4 k^2 eta u, with n = -P + 2 eta W'
+    rows = slice(0, n - 1)
+    A[rows, : s0] = (D @ stress)[inside]
+    A[rows, W] += (-np.diag(dU) - 1j * k * U[:, None] * u)[inside]
+    A[rows, W] += (2j * k * eta[inside, None] * D[inside] - 4 * k**2 * eta[inside, None] * u[inside])
+    A[rows, P] -= 1j * k * eye[inside]
+    B[rows, W] = u[inside]
+    # (sigma + i k U) W = n' + i k t
+    rows = slice(n - 1, 2 * n - 2)
+    slope = eta_slope(shields, mu1, b, p[inside])
+    A[rows, : s0] = 1j * k * stress[inside]
+    A[rows, W] += 2 * eta[inside, None] * D2[inside] + 2 * slope[:, None] * D[inside] - 1j * k * np.diag(U)[inside]
+    A[rows, P] -= D[inside]
+    B[rows, W] = eye[inside]
+    R = cut_response(k, Re, cut / k, 2 * n) if R is None else R
+    end = 2 * n - 2
+    A[end, W], A[end + 1, W] = eye[0], D[0]
+    A[end + 2, P], A[end + 2, s0] = eye[n], -1
+    A[end + 3, : s0], A[end + 3, s0] = stress[n], mu1 * shields * R
+    A[end + 4, W], A[end + 4, s0], B[end + 4, s0] = eye[n], -1j * k * U[n], 1
+    return finite(A, B)
+
+
+def eta_slope(shields, mu1, b, p):
+    """d eta / dz of eta = mu1 shields b sqrt(p) / (shields - p), p = 1 - z."""
+    root = np.sqrt(p)
+    return -mu1 * shields * b * (0.5 / root / (shields - p) + root / (shields - p) ** 2)
+
+
+def cut_response(k, Re, height, n):
+    """R = Psi''(0) of (4.59)-(4.63) with a rigid lid, by collocation of the fourth derivative."""
+    z, D = chebyshev(n, 0, height)
+    eye = np.eye(n + 1)
+    laplace = D @ D - k**2 * eye
+    A = (laplace @ laplace / Re - 1j * k * z[:, None] * laplace).astype(complex)
+    right = np.zeros(n + 1, complex)
+    A[0], A[1], A[n], A[n - 1] = eye[0], D[0], eye[n], D[n]
+    right[1] = 1
+    return (D @ D @ np.linalg.solve(A, right))[0]
+
+
+def poiseuille(Re, k, n):
+    """Clamped Orr-Sommerfeld on the n - 1 interior points: Trefethen, Spectral Methods in MATLAB, program 40."""
+    y, D = chebyshev(n, -1, 1)
+    inside = slice(1, n)
+    D2 = D @ D
+    clamp = np.diag(np.r_[0, 1 / (1 - y[inside] ** 2), 0])
+    D4 = (np.diag(1 - y**2) @ D2 @ D2 - 8 * np.diag(y) @ D2 @ D - 12 * D2) @ clamp
+    D2, D4, y = D2[inside, inside], D4[inside, inside], y[inside]
+    eye = np.eye(n - 1)
+    laplace = D2 - k**2 * eye
+    A = (D4 - 2 * k**2 * D2 + k**4 * eye) / Re - 2j * k * eye - 1j * k * np.diag(1 - y**2) @ laplace
+    return finite(A, laplace)
