@@ -65,7 +65,8 @@ class Expansion:
         exact = {name: sp.nsimplify(value, rational=True) for name, value in values.items()}
         substitution = {symbol: exact[symbol.name] for symbol in self._symbols if symbol.name in exact}
         terms = {power: c.subs(substitution) for power, c in self.terms.items()}
-        return replace(self, terms=terms, parameters={**self.parameters, **exact})
+        return replace(self, terms=terms, parameters={**self.parameters, **exact},
+                       wavenumber=self.wavenumber.subs(substitution))
 
     def truncated(self, power) -> "Expansion":
         """Only the terms up to `power`; the next one that does not vanish sets the order of the error."""

@@ -200,6 +200,9 @@ def test_just_above_yield():
     response = complex(fluid.response(1, 1))
     assert law.values()[2] == pytest.approx(1j * response / 4)
     assert law.next_power == 3
+    one = {law.gauge: 1}
+    assert complex(law.growth_rate.subs(one).evalf()) == pytest.approx(-response.imag / 4)
+    assert complex(law.phase_speed.subs(one).evalf()) == pytest.approx(-response.real / 4)
     # the same leading coefficient as of a, and B is smaller
     small = sp.Symbol("small", positive=True)
     assert sp.limit(dune.leading_flux().subs(shields, 1 + small) / small**2, small, 0) == 1 / (2 * b)
