@@ -12,7 +12,7 @@ import numpy as np
 
 from .errors import ParameterError
 from .mode import Solver
-from .pencil import Pencil, Weights
+from .pencil import Pencil
 from .system import Equation, System
 
 _STEP = 1e-3
@@ -24,16 +24,15 @@ def parameter_slope(solver, mode, name):
     """Return d sigma / d name of a mode of `solver.flow`, at fixed wavenumber."""
     weights, flows = _neighbours(solver.flow, name)
     changes = Pencil(_difference(weights, [System(flow) for flow in flows]), mode.degree)
-    slope = _product(mode, changes, changes.weights(solver.symbols(mode.k)))
+    slope = _product(mode, changes, changes.weights(solver.symbols(mode.k)).value)
     if solver.flow.functions:
         slope += _through_functions(solver, mode, weights, flows)
     return solver.width(mode.k) * slope
 
 
-def _product(mode, pencil, weights):
-    """y^H (A - rate B) x."""
-    a, b = pencil.pair(weights)
-    return np.vdot(mode.y, a @ mode.x - mode.rate * (b @ mode.x))
+def _product(mode, pencil, values):
+    """y^H (A - rate B) x for the parts weighted with `values`."""
+    return (values * pencil.powers(mode.rate)) @ (pencil.matrices.left(mode.y.conj()) @ mode.x)
 
 
 def _neighbours(flow, name):
@@ -80,5 +79,4 @@ def _through_functions(solver, mode, weights, flows):
     """The part of d rate / d p that comes from the flow's functions of k."""
     pencil = solver.pencil(mode.degree)
     values = [pencil.weights(Solver(flow, assembly=solver.assembly).symbols(mode.k)).value for flow in flows]
-    change = weights @ np.array(values)
-    return _product(mode, pencil, Weights(change, change, change))
+    return _product(mode, pencil, weights @ np.array(values))
