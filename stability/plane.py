@@ -21,7 +21,7 @@ _DRIFT = 0.05  # of the growth between two degrees, relative to |sigma|, at whic
 _OVERLAP = 0.5
 _HALVINGS = 12
 _FIRST = 0.01  # value tried instead of 0
-_LOW = 6  # rung of the degrees below which no look starts
+_LOW = 8  # rung of the degrees below which no look starts
 _SETTLED = 1e-3  # growth / |sigma| nearer to zero than this, in a look, is computed properly
 
 
