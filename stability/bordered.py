@@ -6,6 +6,8 @@
 The interior is factorised as a band (LAPACK gbtrf); the border follows by block elimination.
 """
 
+from functools import cached_property
+
 import numpy as np
 from scipy.linalg import lapack
 
@@ -47,7 +49,7 @@ class Bordered:
         return stack
 
     def combine(self, weights):
-        """Return the one matrix sum_p weights[p] * part p."""
+        """Return sum_p weights[..., p] * part p: one matrix, or one per point."""
         return self._like(weights @ self.flat)
 
     def squared(self):
@@ -58,14 +60,33 @@ class Bordered:
         return Bordered(flat, self.interior, self.border, self.lower, self.upper)
 
     def left(self, y):
-        """Return y^T times every matrix of the stack (no conjugation); shape (..., size)."""
-        inner, border = y[: self.interior], y[self.interior:]
-        padded = np.zeros(self.interior + self.lower + self.upper, y.dtype)
-        padded[self.upper: self.upper + self.interior] = inner
-        width, step = self.lower + self.upper + 1, padded.itemsize
-        windows = np.ndarray((self.interior, width), padded.dtype, padded, 0, (step, step))  # sliding, not copied
-        product = np.concatenate([(self.band[..., self.lower:] * windows).sum(axis=-1), inner @ self.right], axis=-1)
-        return product + border @ self.bottom
+        """Return y^T times each matrix of a stack (points, ...) with its own row y (points, size)."""
+        inner, border = y[:, : self.interior], y[:, self.interior:]
+        banded = (self.band[..., self.lower:] * self._windows(inner)).sum(axis=-1)
+        beside = np.einsum("ni,nib->nb", inner, self.right)
+        return np.concatenate([banded, beside], axis=1) + np.einsum("nb,nbs->ns", border, self.bottom)
+
+    def left_all(self, y):
+        """Return every row y (points, size) times every matrix of the stack: (points, parts, size)."""
+        inner, border = y[:, : self.interior], y[:, self.interior:]
+        windows = self._windows(inner).transpose(1, 2, 0)
+        banded = self._by_column @ windows  # (interior, parts, points)
+        beside = np.einsum("ni,pib->npb", inner, self.right)
+        product = np.concatenate([banded.transpose(2, 1, 0), beside], axis=2)
+        return product + np.einsum("nb,pbs->nps", border, self.bottom)
+
+    @cached_property
+    def _by_column(self):
+        """The band without the room for fill as (interior, parts, width)."""
+        return np.ascontiguousarray(self.band[..., self.lower:].transpose(1, 0, 2))
+
+    def _windows(self, inner):
+        """Sliding windows (points, interior, width): the rows that meet each column of the band; not copied."""
+        width = self.lower + self.upper + 1
+        padded = np.zeros((len(inner), self.interior + width - 1), inner.dtype)
+        padded[:, self.upper: self.upper + self.interior] = inner
+        return np.ndarray((len(inner), self.interior, width), padded.dtype, padded, 0,
+                          (*padded.strides, padded.itemsize))
 
     def dense(self):
         """Return a single matrix in full."""
@@ -92,9 +113,9 @@ class Entries:
         self._by_column = _grouped(columns, rows, part, values)
 
     def combine(self, weights):
-        """Return the one matrix sum_p weights[p] * part p, for products `matrix @ x` and `y @ matrix`."""
+        """Return sum_p weights[..., p] * part p, for products `matrix @ x` and `y @ matrix`."""
         orders = self._by_row, self._by_column
-        return _Sparse(*((*places, weights[part] * values) for *places, part, values in orders), self._size)
+        return _Sparse(*((*places, weights[..., part] * values) for *places, part, values in orders), self._size)
 
 
 class _Sparse:
@@ -110,9 +131,10 @@ class _Sparse:
         return self._sum(y, *self._by_column)
 
     def _sum(self, vector, places, starts, across, values):
-        total = np.zeros(self._size, np.result_type(vector, values))
+        """Products of each vector (..., size) with its own matrix."""
+        total = np.zeros((*vector.shape[:-1], self._size), np.result_type(vector, values))
         if len(starts):
-            total[places] = np.add.reduceat(values * vector[across], starts)
+            total[..., places] = np.add.reduceat(values * vector[..., across], starts, axis=-1)
         return total
 
     def dense(self):

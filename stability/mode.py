@@ -1,33 +1,22 @@
-"""One mode: a two-sided inverse iteration with Rayleigh quotient, its error bar and its slope in k.
-
-One LU factorisation of A - rate B near the eigenvalue serves both eigenvectors x and y. The two-sided
-Rayleigh quotient is then wrong only by the product of their errors, and the pair (y, x) yields
-
-    d sigma / d anything = - y^H (d residual matrix) x / (y^H B x),
-
-hence the slope in k, the truncation error (y against the residual beyond the truncation) and the
-rounding error (y against a random rounding of every matrix entry).
-"""
+"""One mode of one flow: its record, and the solver that refines it at the degree it needs."""
 
 from dataclasses import dataclass, field
-from math import sqrt
 from typing import Any
 
 import numpy as np
 
-from .bordered import Factors
-from .errors import ModeLost, NotResolved, ParameterError
+from .errors import NotResolved, ParameterError
 from .pencil import Pencil
+from .refine import refine, refine_many
 from .system import System
 
 DEGREES = (8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 128, 160, 192, 256, 320,
            384, 512)
 TOLERANCE = 1e-10  # default bound on error / |sigma| for a resolved mode
 
+_TOGETHER = 32  # points refined at once: their matrices stay in the cache
 _EPS = np.finfo(float).eps
 _ROUNDING = 3.0  # standard deviations of the accumulated rounding that the error bar spans
-_FACTORISATIONS = 12
-_TINY = np.finfo(float).tiny
 
 
 @dataclass(frozen=True)
@@ -118,8 +107,11 @@ class Solver:
             self.prepare(np.array([k], dtype=float))
         return self._symbols[float(k)]
 
-    def weights(self, k, degree):
-        return self.pencil(degree).weights(self.symbols(k))
+    def weights(self, wavenumbers, degree):
+        """Return the weights (points, parts) of the pencil of a degree at several wavenumbers."""
+        symbols = [self.symbols(k) for k in wavenumbers]
+        columns = {name: np.array([point[name] for point in symbols]).T for name in symbols[0]}
+        return self.pencil(degree).weights(columns)
 
     def width(self, k):
         """sigma / rate at wavenumber k."""
@@ -135,12 +127,30 @@ class Solver:
         for degree in self.degrees[start:]:
             pencil = self.pencil(degree)
             x, y = transfer(self, vectors, degree) if vectors else (None, None)
-            eigen = _refine(pencil, self.weights(k, degree), rate, x, y)
+            eigen = refine(pencil, self.weights([k], degree), rate, x, y)
             mode = self._mode(k, degree, eigen)
-            if mode.truncation <= max(mode.rounding, self.margin * self.tolerance * abs(mode.sigma)):
+            if self._fits(mode):
                 break
             rate, vectors = eigen.rate, (degree, eigen.x, eigen.y)
         return mode
+
+    def solve_many(self, wavenumbers, rates, degree, x, y):
+        """Return the modes next to `rates` at many wavenumbers at once; None where more work is needed.
+
+        `x`, `y` (points, size) are good guesses of the vectors at this degree.
+        """
+        pencil, modes = self.pencil(degree), []
+        for first in range(0, len(rates), _TOGETHER):
+            block = slice(first, first + _TOGETHER)
+            weights = self.weights(wavenumbers[block], degree)
+            eigen = refine_many(pencil, weights, rates[block], x[block], y[block])
+            found = [self._mode(k, degree, eigen.at(i)) for i, k in enumerate(wavenumbers[block])]
+            modes += [mode if settled and self._fits(mode) else None
+                      for mode, settled in zip(found, eigen.settled, strict=True)]
+        return modes
+
+    def _fits(self, mode):
+        return mode.truncation <= max(mode.rounding, self.margin * self.tolerance * abs(mode.sigma))
 
     def next_degree(self, mode):
         """The degree to try first near this mode: one rung lower where it is over-resolved."""
@@ -193,87 +203,6 @@ def _fit(vector, source, target, size):
         count = min(len(places), len(target[name]))
         fitted[target[name][:count]] = vector[places[:count]]
     return fitted
-
-
-@dataclass(frozen=True)
-class _Eigen:
-    rate: complex
-    slope: complex
-    truncation: float
-    rounding: float
-    spread: float
-    x: np.ndarray
-    y: np.ndarray
-    bx: np.ndarray
-    by: np.ndarray
-
-
-def _refine(pencil, weights, rate, x, y):
-    """Two-sided inverse iteration from `rate` (and vectors, if known) until the quotient has settled."""
-    b = pencil.b(weights)
-    x = _start(pencil.size) if x is None else x
-    y = _start(pencil.size) if y is None else y.conj()  # y^H, a row vector, from here on
-    if pencil.real and np.imag(rate) == 0:
-        rate, x, y = float(np.real(rate)), x.real, y.real
-    for _ in range(_FACTORISATIONS):
-        try:
-            lu = Factors(pencil.shifted(weights, rate))
-        except np.linalg.LinAlgError:
-            rate = rate * (1 + 4 * _EPS) + _TINY
-            continue
-        x, x_error = _iterate(lambda v: lu.solve(b @ v), x)  # noqa: B023
-        y, y_error = _iterate(lambda v: lu.solve_left(v @ b), y)  # noqa: B023
-        eigen = _quotient(pencil, weights, x, y, b)
-        if not np.isfinite(eigen.rate):
-            break
-        if x_error * y_error < 0.1 * _EPS and max(x_error, y_error) < 1e-6:
-            return eigen
-        rate = eigen.rate
-    raise ModeLost(f"inverse iteration near rate {complex(rate):.6g} did not settle")
-
-
-def _start(size):
-    return np.random.default_rng(1).standard_normal(size)
-
-
-def _iterate(step, vector):
-    """Two inverse iterations with one factorisation; return the vector and an estimate of its error.
-
-    Vectors are scaled by one component. The second step shrinks what the first one changed by the
-    ratio of the distances to the wanted and the next eigenvalue, and so will the next.
-    """
-    pivot = np.argmax(np.abs(vector))
-    first = step(vector)
-    first = first / first[pivot]
-    second = step(first)
-    second = second / second[pivot]
-    change = _norm(second - first)
-    ratio = change / (_norm(first - vector / vector[pivot]) + _TINY)
-    return second, min(1.0, ratio) * change / _norm(second) + _EPS
-
-
-def _norm(vector):
-    return sqrt(np.vdot(vector, vector).real)  # a third of the time of np.linalg.norm
-
-
-def _quotient(pencil, weights, x, y, b):
-    """Rayleigh quotient of the pair (y a row vector), its slope in k and its errors."""
-    first = pencil.first_b
-    rows = pencil.matrices.left(y)  # (parts, size)
-    c = rows @ x
-    value = weights.value * c
-    norm = -value[first:].sum()  # y B x
-    rate = value[:first].sum() / norm
-    power = pencil.powers(rate)
-    y = y / norm
-    slope = (weights.slope * c * power).sum() / norm
-    spread = (weights.spread * np.abs(c * power)).sum() / abs(norm)
-    entries = pencil.squares.combine(np.abs(weights.value * power) ** 2)
-    variance = entries.left(np.abs(y) ** 2) @ np.abs(x) ** 2  # of matrix entries
-    variance += (np.abs(value * power) ** 2).sum() / abs(norm) ** 2  # of the weights, common to a part
-    beyond = np.abs(pencil.beyond(weights.value * power, x)).reshape(len(pencil.last), -1).sum(axis=1)
-    truncation = beyond @ np.abs(y[pencil.last]).max(axis=1)
-    return _Eigen(rate, slope, truncation, _EPS * np.sqrt(variance), spread, x, y.conj(), b @ x, y @ b)
 
 
 def _symbols(k, functions):

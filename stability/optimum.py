@@ -128,7 +128,7 @@ def _look(solver, low, high):
     chunk = max(1, int(log(_DECAYED) / _STEP))
     for first in range(1, count, chunk):
         path = follow(solver, modes[-1], wavenumbers[first: first + chunk])
-        modes += path.visited[1:]
+        modes += path.modes
         if path.lost:
             return modes, path.lost
         if all(mode.growth_rate < 0 for mode in modes[-chunk - 1:]):

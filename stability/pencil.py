@@ -25,7 +25,7 @@ _TAIL = 8  # coefficients kept beyond the truncation, per equation
 
 @dataclass(frozen=True)
 class Weights:
-    """Scalars that multiply the constant matrices at one wavenumber: each array has shape (parts,).
+    """Scalars that multiply the constant matrices: arrays (parts,), or (points, parts) at several wavenumbers.
 
     `slope` is d value / dk; `spread` is the uncertainty of the value where a symbol has one.
     """
@@ -33,6 +33,10 @@ class Weights:
     value: np.ndarray
     slope: np.ndarray
     spread: np.ndarray
+
+    def at(self, index):
+        """Return the weights of one point."""
+        return Weights(self.value[index], self.slope[index], self.spread[index])
 
 
 class Pencil:
@@ -110,12 +114,12 @@ class Pencil:
             np.add.at(self.tail[part], (rows, np.searchsorted(self.tail_columns, columns)), values)
 
     def weights(self, symbols):
-        """Return the `Weights` for symbols {name: (value, slope, error)} at one wavenumber; no value may be 0."""
-        table = np.array([symbols[name] for name in self._symbols])
-        value, slope, spread = table.T
-        product = np.prod(value**self._powers, axis=1)
-        return Weights(product, product * (self._powers @ (slope / value)),
-                       np.abs(product) * (self._powers @ np.abs(spread / value)))
+        """Return the `Weights` for symbols {name: (value, slope, error)}, non-zero numbers or arrays (points,)."""
+        table = np.array([symbols[name] for name in self._symbols])  # (symbols, 3) or (symbols, 3, points)
+        value, slope, spread = (table[:, i].T for i in range(3))
+        product = np.prod(value[..., None, :] ** self._powers, axis=-1)
+        return Weights(product, product * (slope / value @ self._powers.T),
+                       np.abs(product) * (np.abs(spread / value) @ self._powers.T))
 
     def shifted(self, weights, rate):
         """Return A - rate B as a bordered band matrix."""
@@ -126,12 +130,13 @@ class Pencil:
         return self._b.combine(-weights.value)
 
     def beyond(self, weights, x):
-        """Return the residual of x in the tail rows for weighted parts; shape (tail rows,)."""
-        return weights @ (self.tail @ x[self.tail_columns])
+        """Return the residuals of x (points, size) in the tail rows, for weights (points, parts) of the parts."""
+        parts = self.tail @ x[:, self.tail_columns].T  # (parts, tail rows, points)
+        return (weights.T[:, None] * parts).sum(axis=0).T
 
     def powers(self, rate):
-        """Factor of every part in the residual: 1 in A, the rate in B; shape (parts,)."""
-        return np.where(np.arange(len(self.parts)) < self.first_b, 1.0, rate)
+        """Factor of every part in the residual: 1 in A, the rate in B; shape of rate, then (parts,)."""
+        return np.where(np.arange(len(self.parts)) < self.first_b, 1.0, np.asarray(rate)[..., None])
 
     def pair(self, weights):
         """Return A and B in full, each (size, size)."""

@@ -5,6 +5,7 @@ The predictor extrapolates the rate (cubic, from values and slopes at two points
 y_old^H B x_new * y_new^H B x_old near 1: between different modes the product vanishes.
 """
 
+from bisect import bisect_right
 from dataclasses import dataclass
 from math import copysign, exp, log
 
@@ -14,11 +15,13 @@ from .errors import ModeLost
 from .mode import transfer
 
 _FIRST_STEP = 0.3  # in log k
-_LARGEST_STEP = 1.5
+_LARGEST_STEP = 0.6
 _SMALLEST_STEP = 1e-8
 _PREDICTION = 0.05  # relative error of the predictor at which the step length is kept
 _OVERLAP = 0.4  # largest deviation of the overlap from 1
 _STEPS = 2000
+_FEW = 3  # wavenumbers that are walked to one by one
+_DRIFT = 0.05  # largest relative difference of a refined rate from its interpolation
 _AGREEMENT = 0.03  # of the surface mode with its long-wave limit, in value and in slope
 
 
@@ -46,7 +49,6 @@ class Path:
     modes: tuple
     collisions: tuple
     lost: str = ""
-    visited: tuple = ()
 
 
 def surface_mode(solver, k):
@@ -69,15 +71,81 @@ def surface_mode(solver, k):
 
 
 def follow(solver, start, wavenumbers):
-    """Follow the mode `start` through `wavenumbers`, a monotone sequence leading away from start.k."""
+    """Follow the mode `start` through `wavenumbers`, a monotone sequence leading away from start.k.
+
+    A walk sets its own steps; the wavenumbers asked for are then interpolated between them and refined
+    all at once. The few that do not settle at once are reached by a walk of their own.
+    """
+    wavenumbers = np.asarray(wavenumbers, dtype=float)
     walk = _Walk(solver, start)
-    modes = []
     try:
-        for k in wavenumbers:
-            modes.append(walk.to(float(k)))
+        if len(wavenumbers) <= _FEW:
+            modes = [walk.to(k) for k in wavenumbers.tolist()]
+        else:
+            walk.to(float(wavenumbers[-1]))
+            modes = _between(solver, walk.segments, wavenumbers)
+        return Path(tuple(modes), tuple(walk.collisions))
     except ModeLost as reason:
-        return Path(tuple(modes), tuple(walk.collisions), str(reason), tuple(walk.visited))
-    return Path(tuple(modes), tuple(walk.collisions), "", tuple(walk.visited))
+        reached = wavenumbers[np.abs(np.log(wavenumbers / start.k)) <= abs(log(walk.now.k / start.k))]
+        return Path(tuple(_between(solver, walk.segments, reached)), tuple(walk.collisions), str(reason))
+
+
+def _between(solver, segments, wavenumbers):
+    """Modes at `wavenumbers`, all within the walk that visited `segments` (lists of modes without a collision)."""
+    found, guesses = {}, {}
+    for k in wavenumbers.tolist():
+        nodes, index = _interval(segments, k)
+        if nodes[index].k == k or len(nodes) == 1:
+            found[k] = _Walk(solver, nodes[index]).to(k)
+        else:
+            rate, degree, x, y = _interpolate(solver, nodes, index, log(k))
+            guesses.setdefault(degree, []).append((k, rate, x, y, nodes[index]))
+    for degree, group in guesses.items():
+        k, rates, x, y, nodes = zip(*group, strict=True)
+        modes = solver.solve_many(k, np.array(rates), degree, np.array(x), np.array(y))
+        for value, rate, node, mode in zip(k, rates, nodes, modes, strict=True):
+            near = mode is not None and abs(mode.rate - rate) < _DRIFT * (abs(rate) + abs(node.rate - rate))
+            found[value] = mode if near else _Walk(solver, node).to(value)
+    return [found[k] for k in wavenumbers.tolist()]
+
+
+def _interval(segments, k):
+    """The segment that contains k, or the one that ends nearest to it, and the node at or before k."""
+    def outside(nodes):
+        ends = sorted(log(node.k) for node in (nodes[0], nodes[-1]))
+        return max(ends[0] - log(k), log(k) - ends[1], 0.0)
+
+    nodes = min(segments, key=outside)
+    if outside(nodes):
+        nearest = min(nodes[0], nodes[-1], key=lambda node: abs(log(node.k / k)))
+        return [nearest], 0
+    direction = copysign(1, nodes[-1].k - nodes[0].k)
+    return nodes, max(bisect_right(nodes, direction * k, key=lambda node: direction * node.k) - 1, 0)
+
+
+def _interpolate(solver, nodes, index, t):
+    """Rate (cubic, values and slopes of two nodes) and vectors (cubic, four nodes) at log k = t."""
+    here, there = nodes[index], nodes[index + 1]
+    h = log(there.k / here.k)
+    u = (t - log(here.k)) / h
+    rise = there.rate - here.rate
+    a, b = h * here.k * here.rate_slope - rise, rise - h * there.k * there.rate_slope
+    rate = here.rate + u * rise + u * (1 - u) * (a * (1 - u) + b * u)
+    degree = max(here.degree, there.degree)
+    first = min(max(index - 1, 0), max(len(nodes) - 4, 0))
+    used = nodes[first: first + 4]
+    times = np.array([log(node.k) for node in used])
+    weights = [np.prod([(t - times[j]) / (times[i] - times[j]) for j in range(len(used)) if j != i])
+               for i in range(len(used))]
+    vectors = [transfer(solver, (node.degree, node.x, node.y), degree) for node in used]
+    return rate, degree, *(_blend(weights, rows, index - first) for rows in zip(*vectors, strict=True))
+
+
+def _blend(weights, vectors, reference):
+    """Weighted sum of eigenvectors, each first given the scale of the one at `reference`."""
+    base = vectors[reference]
+    size = np.vdot(base, base)
+    return sum(weight * size / np.vdot(base, vector) * vector for weight, vector in zip(weights, vectors, strict=True))
 
 
 class _Walk:
@@ -88,7 +156,7 @@ class _Walk:
         self.before, self.now = None, start
         self.step = _FIRST_STEP
         self.collisions = []
-        self.visited = [start]
+        self.segments = [[start]]
 
     def to(self, k):
         for _ in range(_STEPS):
@@ -127,7 +195,7 @@ class _Walk:
 
     def _accept(self, mode):
         self.before, self.now = self.now, mode
-        self.visited.append(mode)
+        self.segments[-1].append(mode)
 
     def _lost(self, why):
         return ModeLost(f"{self.solver.flow}: the mode is lost at k = {self.now.k:.6g}, "
@@ -184,8 +252,8 @@ class _Walk:
         if abs(mode.rate - guess) > 0.5 * abs(guess - middle):
             return False
         self.collisions.append(self._pin(now if now.rate.imag else mode, "real" if now.rate.imag else "pair"))
-        self._accept(mode)
-        self.before = None
+        self.before, self.now = None, mode
+        self.segments.append([mode])
         self.step = abs(log(beyond / now.k))
         return True
 

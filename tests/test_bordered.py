@@ -39,7 +39,9 @@ def test_dense_and_combine(matrices):
 def test_products_from_either_side(matrices):
     stack, sparse, full = matrices
     weights, x = np.array([1.5, 0.5]), np.random.default_rng(8).standard_normal(SIZE) * (1 + 0.5j)
-    np.testing.assert_allclose(stack.left(x), x @ full, atol=1e-12)
+    both = np.array([x, 2j * x])
+    np.testing.assert_allclose(stack.left_all(both), np.array([x @ full, 2j * x @ full]), atol=1e-12)
+    np.testing.assert_allclose(stack.left(both), [x @ full[0], 2j * x @ full[1]], atol=1e-12)
     matrix = np.tensordot(weights, full, 1)
     np.testing.assert_allclose(sparse.combine(weights) @ x, matrix @ x, atol=1e-12)
     np.testing.assert_allclose(x @ sparse.combine(weights), x @ matrix, atol=1e-12)

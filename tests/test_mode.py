@@ -10,7 +10,8 @@ from samples import dunes, reference, vortices
 from stability import NotResolved, dispersion, flows
 from stability.flows import vortex
 from stability.layer import Layer
-from stability.mode import Solver, _refine
+from stability.mode import Solver
+from stability.refine import refine
 
 # Half a unit in the last digit of the multi-precision values (references.py, growth rates at slope 30 deg, Fr2 0.1).
 VORTICES = {0.1: -0.0068518958810, 0.5: -0.1350310816678, 1: -0.3195259582778, 2: -0.4529302727400,
@@ -78,7 +79,7 @@ def test_truncation_error_falls_geometrically_and_its_estimate_bounds_it(flow, k
     errors, estimates = [], []
     for degree in degrees:
         pencil = solver.pencil(int(degree))
-        eigen = _refine(pencil, pencil.weights(solver.symbols(k)), exact / solver.width(k), None, None)
+        eigen = refine(pencil, solver.weights([k], int(degree)), exact / solver.width(k))
         errors.append(solver.width(k) * abs(eigen.rate - exact / solver.width(k)))
         estimates.append(solver.width(k) * eigen.truncation)
     rate = np.polyfit(degrees, np.log10(errors), 1)[0]
