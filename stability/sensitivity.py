@@ -1,7 +1,7 @@
 """The derivative of a mode with respect to a parameter of its flow, from its left and right vectors.
 
 d rate / d p = y^H (dA/dp - rate dB/dp) x. The coefficients of the equations are differenced in p (relative
-step 1e-5), before anything cancels, so the result is good to about 10 digits.
+step 1e-5), before anything cancels, so the result is good to 7 digits or more: enough for Newton.
 """
 
 from dataclasses import replace
@@ -11,7 +11,6 @@ import numpy as np
 
 from . import chebyshev
 from .errors import ParameterError
-from .mode import Solver
 from .system import System
 
 _STEP = 1e-5
@@ -23,12 +22,22 @@ def parameter_slope(solver, mode, name):
     """Return d sigma / d name of a mode of `solver.flow`, at fixed wavenumber."""
     weights, flows = _neighbours(solver.flow, name)
     systems = [System(flow) for flow in flows]
-    pencil = solver.pencil(mode.degree)
-    symbols = {key: value[0] for key, value in solver.symbols(mode.k).items()} | {"rate": mode.rate}
-    slope = sum(part(pencil, mode, symbols, weights, systems) for part in (_in_equations, _in_conditions))
-    if solver.flow.functions:
-        slope += _through_functions(solver, mode, weights, flows)
+    tables = [_symbols(flow, mode) for flow in (solver.flow, *flows)]
+    pencil, here = solver.pencil(mode.degree), solver.assembly.system
+    slope = 0.0
+    for equation, *versions in zip(here.equations, *(system.equations for system in systems), strict=True):
+        terms = _changes(weights, equation.terms, [version.terms for version in versions], tables)
+        slope += _in_equation(pencil, mode, pencil.rows[equation.name], terms)
+    for row, terms, *versions in zip(pencil.rows["conditions"], here.conditions,
+                                     *(system.conditions for system in systems), strict=True):
+        slope += _in_condition(pencil, mode, row, _changes(weights, terms, versions, tables))
     return solver.width(mode.k) * slope
+
+
+def _symbols(flow, mode):
+    """Values of k, rate and the flow's functions of k."""
+    functions = flow.evaluate(np.array([mode.k]))
+    return {"k": mode.k, "rate": mode.rate, **{name: parts[0][0] for name, parts in functions.items()}}
 
 
 def _neighbours(flow, name):
@@ -44,50 +53,46 @@ def _neighbours(flow, name):
     raise ParameterError(f"{flow.name}: {name} = {value:g} lies too close to the end of its range to be varied")
 
 
-def _in_equations(pencil, mode, symbols, weights, systems):
-    slope = 0.0
-    for versions in zip(*(system.equations for system in systems), strict=True):
-        rows = pencil.rows[versions[0].name]
-        for unknown, monomial, series in _changes(weights, [equation.terms for equation in versions]):
-            row, column, values = chebyshev.entries(series, len(rows), pencil.degree, unknown.endswith("'"))
-            places = pencil.columns[unknown.rstrip("'")][column]
-            slope += prod(symbols[key] for key in monomial) * (mode.y.conj()[rows[row]] * values) @ mode.x[places]
-    return slope
+def _changes(weights, terms, versions, tables):
+    """Yield (unknown, factor, series) of the derivative of an equation: of its coefficients, then of its functions.
 
-
-def _in_conditions(pencil, mode, symbols, weights, systems):
-    ends = chebyshev.at(np.array([0.0, 1.0]), pencil.degree)
-    slope = 0.0
-    for row, *versions in zip(pencil.rows["conditions"], *(system.conditions for system in systems), strict=True):
-        for unknown, monomial, series in _changes(weights, versions):
-            name, _, end = unknown.partition("@")
-            values = mode.x[pencil.columns[name]]
-            at_edge = ends[int(end)] @ values if end else values[0]
-            slope += prod(symbols[key] for key in monomial) * series[0] * mode.y[row].conj() * at_edge
-    return slope
-
-
-def _changes(weights, versions):
-    """Terms whose series differ between versions of an equation, with the derivative of the series.
-
-    The weights add up to 0: only the difference from the first version counts.
+    `tables` are the values of the symbols here and in each version. The weights add up to 0: only differences
+    from the first version count.
     """
-    tables = [{term[:2]: term[2] for term in terms} for terms in versions]
-    length = max((len(series) for table in tables for series in table.values()), default=1)
-    for key in dict.fromkeys(key for table in tables for key in table):
-        first, *others = (_padded(table.get(key, np.zeros(1)), length) for table in tables)
-        change = sum(weight * (other - first) for weight, other in zip(weights[1:], others, strict=True))
+    here, *others = tables
+    series = [{term[:2]: term[2] for term in version} for version in versions]
+    length = max((len(values) for version in series for values in version.values()), default=1)
+    for unknown, monomial in dict.fromkeys(key for version in series for key in version):
+        first, *rest = (_padded(version.get((unknown, monomial), np.zeros(1)), length) for version in series)
+        change = sum(weight * (other - first) for weight, other in zip(weights[1:], rest, strict=True))
         if np.any(change):
-            yield *key, change
+            yield unknown, prod(here[key] for key in monomial), change
+    for unknown, monomial, values in terms:
+        first, *rest = (prod(table[key] for key in monomial) for table in others)
+        change = sum(weight * (other - first) for weight, other in zip(weights[1:], rest, strict=True))
+        if change:
+            yield unknown, change, values
+
+
+def _in_equation(pencil, mode, rows, terms):
+    """y^H times the terms of one equation."""
+    total = 0.0
+    for unknown, factor, series in terms:
+        row, column, values = chebyshev.entries(series, len(rows), pencil.degree, unknown.endswith("'"))
+        places = pencil.columns[unknown.rstrip("'")][column]
+        total += factor * (mode.y.conj()[rows[row]] * values) @ mode.x[places]
+    return total
+
+
+def _in_condition(pencil, mode, row, terms):
+    total = 0.0
+    for unknown, factor, series in terms:
+        name, _, end = unknown.partition("@")
+        values = mode.x[pencil.columns[name]]
+        edge = chebyshev.at(float(end), pencil.degree)[0] if end else np.ones(1)
+        total += factor * series[0] * mode.y[row].conj() * (edge @ values)
+    return total
 
 
 def _padded(series, length):
     return np.concatenate((series, np.zeros(length - len(series))))
-
-
-def _through_functions(solver, mode, weights, flows):
-    """The part that comes from the flow's functions of k."""
-    pencil = solver.pencil(mode.degree)
-    values = [pencil.weights(Solver(flow, assembly=solver.assembly).symbols(mode.k)).value for flow in flows]
-    parts = pencil.matrices.left(mode.y.conj()) @ mode.x
-    return (weights @ np.array(values) * pencil.powers(mode.rate)) @ parts
