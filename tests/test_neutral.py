@@ -1,0 +1,143 @@
+"""Neutral curves and critical points, and the derivatives they rest on."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from stability import NotResolved, ParameterError, flows, spectrum
+from stability.energy import condition_numbers, energy
+from stability.mode import Solver
+from stability.neutral import critical, critical_sweep, neutral_curve
+from stability.sensitivity import parameter_slope
+
+FLOWS = [
+    (flows.Poiseuille(), 1.0, "Re"),
+    (flows.RollWave(), 0.3, "slope_deg"),
+    (flows.RollWave(), 0.3, "Fr2"),
+    (flows.Film(We=0.1), 0.8, "We"),
+    (flows.TwoLayerCouette(density_ratio=1.3, gravity=0.2), 1.0, "depth_ratio"),
+    (flows.Dune(depth=3.0), 1.0, "Re"),
+    (flows.Dune(), 1.0, "Re"),
+    (flows.Dune(depth=3.0, fluid="layer"), 1.0, "shields"),
+    (flows.Vortex(), 1.0, "slope_deg"),
+]
+
+
+def leading(flow, k):
+    return spectrum(flow, k, 1).modes[0]
+
+
+@pytest.mark.parametrize(("flow", "k", "name"), FLOWS, ids=lambda part: str(part)[:30])
+def test_parameter_derivative(flow, k, name):
+    """The formula from both vectors against differences of the eigenvalue itself (five points)."""
+    mode, value = leading(flow, k), getattr(flow, name)
+    step = 1e-3 * value
+    sigma = [leading(replace(flow, **{name: value + i * step}), k).sigma for i in (-2, -1, 1, 2)]
+    difference = np.dot(sigma, [1, -8, 8, -1]) / (12 * step)
+    assert parameter_slope(Solver(flow), mode, name) == pytest.approx(difference, rel=2e-7)
+
+
+def test_parameter_derivative_at_the_end_of_the_range():
+    flow = flows.Film(We=0.0)
+    mode, ahead = leading(flow, 1.0), leading(flows.Film(We=1e-7), 1.0)
+    assert parameter_slope(Solver(flow), mode, "We") == pytest.approx((ahead.sigma - mode.sigma) / 1e-7, rel=1e-5)
+
+
+def test_a_parameter_without_effect():
+    flow = flows.TwoLayerCouette(density_ratio=1.0)
+    assert parameter_slope(Solver(flow), leading(flow, 1.0), "gravity") == 0
+
+
+@pytest.mark.parametrize("start", [1000.0, 6000.0, 3e4])
+def test_the_critical_point_does_not_depend_on_the_start(start):
+    point = critical(flows.Poiseuille(Re=start), "Re")
+    assert point.value == pytest.approx(5772.221816209698, rel=1e-11)
+    assert point.k == pytest.approx(1.0205474492853335, rel=1e-11)
+
+
+def test_both_branches_meet_at_the_nose():
+    k = np.array([0.95, 1.0, 1.05, 1.0205474492853335])
+    curve = neutral_curve(flows.Poiseuille(), "Re", k)
+    assert [point.k for point in curve.points] == np.repeat(k, 2).tolist()
+    for point in curve.points:
+        solver = Solver(point.flow)
+        mode = min(spectrum(point.flow, point.k, 3).modes, key=lambda mode: abs(mode.growth_rate))
+        slope = parameter_slope(solver, mode, "Re").real
+        assert abs(mode.growth_rate / slope) <= point.error + mode.error / abs(slope)
+    assert curve.points[6].value == pytest.approx(5772.221816209698, rel=1e-9)
+    assert curve.trace[:, 1].min() == pytest.approx(5772.22, rel=1e-3)
+
+
+def test_the_curve_turns_back_beyond_the_range_asked_for():
+    """k 1.09 lies below the largest neutral wavenumber, 1.0967: two values of Re."""
+    first, second = neutral_curve(flows.Poiseuille(), "Re", [1.09]).points
+    assert first.value < 8000 < second.value
+
+
+def test_wavenumbers_beyond_the_curve_say_so():
+    (point,) = neutral_curve(flows.Poiseuille(), "Re", [1.2]).points
+    assert point.value is None
+    assert "does not reach k = 1.2" in point.status
+
+
+def test_curve_from_a_long_wave_threshold():
+    """The neutral curve of a film leaves Re = (5/4) cot slope at k = 0 with a k^2 correction."""
+    curve = neutral_curve(flows.Film(slope_deg=30.0), "Re", [0.01, 0.02, 0.3])
+    shift = [point.value - 1.25 * point.flow.cot_slope for point in curve.points]
+    assert shift[1] / shift[0] == pytest.approx(4, rel=1e-3)
+    assert shift[2] > 0
+
+
+def test_sweep_starts_from_the_last_value():
+    films = [flows.Film(Re=1.0, slope_deg=slope) for slope in (80, 40, 10, 2, 0.5)]
+    values = [point.value for point in critical_sweep(films, "Re")]
+    assert values == pytest.approx([1.25 * film.cot_slope for film in films], rel=1e-11)
+
+
+def test_dunes_have_a_stable_window():
+    """At small Re and under a lid no dune grows: the nose of that window, on its own curve."""
+    point = critical(flows.Dune(depth=10.0, shields=1.5), "Re")
+    below, above = (spectrum(replace(point.flow, Re=factor * point.value), point.k, 1).sigma[0].real
+                    for factor in (0.99, 1.01))
+    assert below < 0 < above
+    assert point.k > 0
+
+
+@pytest.mark.parametrize("flow", [flows.Couette(), flows.Vortex()], ids=str)
+def test_always_stable(flow):
+    name = "Re" if flow.name == "couette" else "Fr2"
+    with pytest.raises(NotResolved, match=f"stable at every {name} tried"):
+        critical(flow, name)
+
+
+def test_unknown_parameter():
+    with pytest.raises(ParameterError, match="no numeric parameter 'Fr' to vary; it has Re"):
+        critical(flows.Poiseuille(), "Fr")
+    with pytest.raises(ParameterError, match="no numeric parameter 'fluid'"):
+        critical(flows.Dune(), "fluid")
+
+
+@pytest.mark.parametrize(("flow", "k"), [
+    (flows.Poiseuille(), 1.0), (flows.Vortex(), 2.0), (flows.Film(), 1.0), (flows.RollWave(), 0.5),
+    (flows.TwoLayerCouette(density_ratio=1.5), 1.0), (flows.Dune(), 1.0), (flows.Dune(fluid="layer"), 1.0)], ids=str)
+def test_energy_product_is_that_of_the_pencil(flow, k):
+    """(adjoint, state) = y^H B x, and Cauchy-Schwarz bounds the condition number from below by 1."""
+    for mode in spectrum(flow, k, 4).modes:
+        norm = energy(Solver(flow), k, mode.degree)
+        product = norm.width * np.vdot(norm.adjoint @ mode.y, norm.state @ mode.x)
+        assert product == pytest.approx(1, abs=1e-9)
+        assert condition_numbers([mode])[0] >= 1 - 1e-12
+
+
+def test_creeping_flow_is_normal():
+    """Stokes flow is self-adjoint in the energy norm; inertia at Re 1e4 is not."""
+    assert condition_numbers(spectrum(flows.Poiseuille(Re=1e-4), 1.0, 6).modes) == pytest.approx(np.ones(6), abs=1e-6)
+    assert condition_numbers(spectrum(flows.Poiseuille(), 1.0, 12).modes).max() > 300
+
+
+def test_conditions_predict_the_loss_of_digits():
+    """The error bars of the spectrum follow the condition numbers."""
+    modes = spectrum(flows.Poiseuille(), 1.0, 30, strict=False).modes
+    digits = np.log10([mode.error for mode in modes])
+    assert np.corrcoef(digits, np.log10(condition_numbers(modes)))[0, 1] > 0.9
