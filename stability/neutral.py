@@ -22,6 +22,7 @@ from .tracking import surface_mode
 
 _ROUGH = 1e-5  # tolerance of the first Newton steps and of the arclength continuation
 _LONG = 1e-9  # wavenumber that stands for 0
+_LONG_ERROR = 32.0  # error of d rate/dk there in units of the error of the rate (measured: up to 18)
 _ITERATIONS = 20
 _SETTLED = 1e-4  # step of the rough Newton iteration below which its last Jacobian serves at full accuracy
 _POLISH = 6
@@ -206,7 +207,7 @@ def _long_wave_threshold(plane):
     except (ModeLost, ParameterError):
         return None
     value, growth, spread, mode = new
-    error = (abs(growth) + spread) / abs(slope) + 16 * np.finfo(float).eps * abs(value)
+    error = (abs(growth) + spread) / abs(slope)
     return NeutralPoint(mode.flow, plane.vary, 0.0, value, mode.phase_speed, float(error), 0.0, "resolved")
 
 
@@ -220,7 +221,7 @@ def _long_wave_growth(plane, value):
     ahead = [solver.solve(mode.k, mode.rate, (mode.degree, mode.x, mode.y), degree)
              for degree in solver.degrees[rung + 1: rung + 3]]
     slopes = [other.rate_slope.real for other in (mode, *ahead)]
-    return value, slopes[-1], abs(slopes[-1] - slopes[-2]) + 1e-16, mode
+    return value, slopes[-1], abs(slopes[-1] - slopes[-2]) + _LONG_ERROR * mode.error / solver.width(mode.k), mode
 
 
 @one_thread
