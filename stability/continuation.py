@@ -33,16 +33,16 @@ SEARCH = (1e-2, 100.0)  # default range of k for the fastest growing wavenumber
 
 INTERRUPTED = "interrupted"
 
-_RESIDUALS = (1e-5, 1e-6, 1e-7, 1e-8)  # tolerances of solve_bvp tried in turn
+_RESIDUALS = (1e-4, 1e-6, 1e-7, 1e-8)  # tolerances of solve_bvp tried in turn
 _NODES = 20_000
-_STEP_NODES = 150  # a step that needs more than these and twice its mesh has a bad guess
+_STEP_NODES = 100  # a step that needs more than these beyond its mesh has a bad guess
 _START_NODES = 17
 _FIRST_STEP = 0.2  # in log of the parameter
 _LARGEST_STEP = 0.2
-_SMALLEST_STEP = 2e-3
+_SMALLEST_STEP = 4e-3
 _CHANGE = 0.1  # largest relative difference between predictor and corrector
 _NUDGE = 1e-3  # in log of the parameter, for slopes
-_BEND = 0.1  # error of the trapezoidal rule for a step, relative to its largest slope
+_BEND = 0.07  # error of the trapezoidal rule for a step, relative to its largest slope
 _BEND_FLOOR = 1e-3
 _STEPS = 400
 _SHEAR_STRESS = 2  # index of t(0) among the edge values
@@ -135,6 +135,12 @@ class RegularisedVortex(Vortex):
         no_slip, no_flow, stress, pressure, kinematic = super().conditions(edges, names)
         load = self.delta * names.k**2 * names.rate * edges.grains[1].w
         return no_slip, no_flow, stress - load, pressure, kinematic
+
+    def long_wave(self, k):
+        """sigma = -(k^2 / tan slope) int_0^1 (1-z)^2 (1+delta-z)^{-1/2} dz, what (4.30) should say."""
+        low, high = self.delta**0.5, (1 + self.delta) ** 0.5
+        integral = 2 / 5 * high**5 - 4 / 3 * self.delta * high**3 + 2 * self.delta**2 * high - 16 / 15 * low**5
+        return -(k**2) / tan(radians(self.slope_deg)) * integral
 
 
 def thesis_setting(flow, delta=None):
@@ -564,7 +570,7 @@ class _Walk:
 
     def _corrected(self, value, mesh, fields, parameters):
         problem = Problem(*self.family(value))
-        return _solve(problem, mesh, fields, parameters, self.residuals[0], nodes=_STEP_NODES + 2 * len(mesh))
+        return _solve(problem, mesh, fields, parameters, self.residuals[0], nodes=_STEP_NODES + len(mesh))
 
     def _predict(self, value, mesh):
         """Fields and parameters extrapolated in the logarithm of the value."""

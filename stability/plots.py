@@ -34,6 +34,8 @@ def draw(result, path):
             _neutral_curve(result, *axes)
         elif isinstance(result, list):
             _spectra(result, figure, axes)
+        elif hasattr(result, "measurements"):
+            _comparison(result, figure, axes)
         elif isinstance(result[0], WellPosedness):
             _well_posedness(*result, *axes)
         elif isinstance(result[1][0], NeutralPoint):
@@ -49,6 +51,8 @@ def _caption(result):
         return f"{result.flow}, {result.mode} mode"
     if isinstance(result, NeutralCurve):
         return str(result.flow)
+    if hasattr(result, "measurements"):
+        return f"{result.flow}, k = {result.k:g}"
     if isinstance(result, list) or isinstance(result[0], WellPosedness):
         return str(result[0].flow)
     return str(result[1][0].flow)
@@ -115,6 +119,26 @@ def _well_posedness(found, growth, left, right):
     right.set_yscale(**scale)
     right.set(xlabel="wavenumber $k$", ylabel=r"largest growth rate $\sigma_r$")
     right.legend(fontsize=7)
+
+
+def _comparison(found, figure, axes):
+    """Relative error against time, a curve for each method; dashed what it reports."""
+    axes[1].remove()
+    axes[0].set_subplotspec(figure.add_gridspec(1, 1)[0])
+    scale = abs(found.reference.sigma)
+    floor = np.finfo(float).eps / 2  # errors below are drawn there
+    colors = {"collocation": BLUE, "bvp": RED, "bvp-thesis": "#d98200", "dense": GREY}
+    for method, color in colors.items():
+        rows = [one for one in found.measurements if one.method == method]
+        seconds = [one.seconds for one in rows]
+        if rows:
+            error = np.maximum([one.error / scale for one in rows], floor)
+            axes[0].loglog(seconds, error, ".-", color=color, label=method)
+        if rows and rows[0].reported is not None:
+            reported = np.maximum([one.reported / scale for one in rows], floor)
+            axes[0].loglog(seconds, reported, "--", color=color, linewidth=0.8)
+    axes[0].set(xlabel="seconds per eigenvalue", ylabel="relative error (dashed: reported)")
+    axes[0].legend()
 
 
 def _spans_decades(values):

@@ -1,0 +1,85 @@
+"""All methods on one eigenvalue: values, reported errors, and the command."""
+
+import json
+import sys
+
+import numpy as np
+import pytest
+
+from stability import flows
+from stability.cli import main
+from stability.compare import compare, reference, target, timed, wavenumbers
+
+
+@pytest.fixture(autouse=True)
+def short(monkeypatch):
+    """Fewer and shorter measurements: these tests are about values."""
+    module = sys.modules["stability.compare"]
+    monkeypatch.setattr(module, "_SECONDS", 0.0)
+    monkeypatch.setattr(module, "_REPEATS", 1)
+    monkeypatch.setattr(module, "POINTS", 5)
+    monkeypatch.setattr(module, "COLLOCATION_DEGREES", (8, 16, 32))
+    monkeypatch.setattr(module, "DENSE_DEGREES", (8, 16, 32))
+    monkeypatch.setattr(module, "RESIDUALS", (1e-3, 1e-6))
+    monkeypatch.setattr(module, "THESIS_RESIDUALS", (1e-3,))
+
+
+@pytest.mark.parametrize(("flow", "k"), [(flows.Vortex(), 2.0), (flows.Dune(), 1.0)])
+def test_reported_errors_hold_and_collocation_is_exact(flow, k):
+    found = compare(flow, k, ("collocation", "dense", "bvp"))
+    assert found.reference.source == "power series in 30-digit arithmetic"
+    assert found.failed == ()
+    for one in found.measurements:
+        assert one.reported is None or one.error <= one.reported
+        assert one.seconds > 0
+    best = {one.method: one.error for one in found.measurements}
+    assert best["collocation"] < 1e-15 * 3
+    assert best["dense"] < 1e-13
+    assert best["bvp"] < 1e-9
+
+
+def test_bias_of_the_thesis_setting_does_not_go_away():
+    (one,) = compare(flows.Vortex(), 2.0, ("bvp-thesis",)).measurements
+    assert one.reported < 1e-3 * one.error
+    assert one.error > 5e-3
+
+
+def test_flow_without_an_independent_reference_says_so():
+    flow = flows.Poiseuille(Re=1e4)
+    mode = target(flow, 1.0)
+    known = reference(flow, 1.0, mode)
+    assert known.source.startswith("collocation at degree")
+    assert abs(known.sigma + 1j * (0.237526488820470107446579 + 0.00373967062297940993222j)) < known.error
+
+
+def test_failures_are_listed():
+    found = compare(flows.Poiseuille(Re=1e4), 1.0, ("collocation", "bvp-thesis"))
+    assert all(method == "collocation" for method, _ in found.failed)
+    assert [one.setting for one in found.measurements][-1] == "degree 32"
+
+
+def test_sweep_has_the_wavenumber_in_its_middle():
+    values = wavenumbers(0.7)
+    assert values[len(values) // 2] == 0.7
+    np.testing.assert_allclose(np.diff(np.log(values)), np.log(values[1] / values[0]), rtol=1e-9)
+
+
+def test_timed_returns_value_and_shortest_time():
+    value, seconds = timed(lambda: 7)
+    assert value == 7
+    assert 0 < seconds < 0.1
+
+
+def test_command(capsys, tmp_path):
+    picture = tmp_path / "compare.png"
+    assert main(["compare", "vortex", "--k", "2", "--json", "--plot", str(picture)]) == 0
+    captured = capsys.readouterr()
+    rows = json.loads(captured.out)["rows"]
+    assert {row["method"] for row in rows} == {"collocation", "dense", "bvp", "bvp-thesis"}
+    assert "reference: sigma = -0.452930272740044" in captured.err
+    assert picture.stat().st_size > 10_000
+
+
+def test_command_takes_one_wavenumber(capsys):
+    assert main(["compare", "vortex", "--k", "1,2"]) == 2
+    assert "one wavenumber" in capsys.readouterr().err
