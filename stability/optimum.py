@@ -14,12 +14,13 @@ import numpy as np
 from .errors import ModeLost, NotResolved
 from .mode import DEGREES, TOLERANCE, Assembly, Solver
 from .threads import one_thread
-from .tracking import follow, surface_mode
+from .tracking import follow, surface_mode, survey
 
 SEARCH = (1e-2, 100.0)  # default range of k; the lower end moves down until growth is a power law
 _ROUGH = 1e-3  # tolerance of the global look: small systems find the brackets
 _STEP = 0.25  # of the global look, in log k
-_DECAYED = 10.0  # the look ends once the mode has decayed over this factor in k
+_DECAYED = 10.0  # the look ends once the mode has decayed over this factor in k ...
+_SHORT = 10.0  # ... and waves are this short: a second branch may grow where the first has decayed
 _ITERATIONS = 20
 _SLOPE_ERROR = 4.0  # error of d sigma/dk in units of error of sigma / k (measured)
 
@@ -120,19 +121,16 @@ def _status(maxima, status, search):
 
 def _look(solver, low, high):
     """Modes along k from the long-wave regime to where the mode has decayed for good, and a status."""
-    start = _power_law_start(solver, low)
-    count = max(2, int(np.ceil(log(high / start.k) / _STEP)) + 1)
-    wavenumbers = np.geomspace(start.k, high, count)
-    solver.prepare(wavenumbers)
-    modes = [start]
-    chunk = max(1, int(log(_DECAYED) / _STEP))
-    for first in range(1, count, chunk):
-        path = follow(solver, modes[-1], wavenumbers[first: first + chunk])
-        modes += path.modes
-        if path.lost:
-            return modes, path.lost
-        if all(mode.growth_rate < 0 for mode in modes[-chunk - 1:]):
-            break
+    modes = [_power_law_start(solver, low)]
+    growing = modes[0].k
+    try:
+        for mode in survey(solver, modes[0], high, _STEP):
+            modes.append(mode)
+            growing = mode.k if mode.growth_rate > 0 else growing
+            if mode.k > max(_DECAYED * growing, _SHORT):
+                break
+    except ModeLost as reason:
+        return modes, str(reason)
     if _growth_slope(modes[-1]) > 0 and modes[-1].growth_rate > 0:
         return modes, f"growth still rises at k = {modes[-1].k:g}, the end of the search"
     return modes, "resolved"

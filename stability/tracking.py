@@ -148,23 +148,37 @@ def _blend(weights, vectors, reference):
     return sum(weight * size / np.vdot(base, vector) * vector for weight, vector in zip(weights, vectors, strict=True))
 
 
+def survey(solver, start, end, step):
+    """Yield the modes that a walk from `start` to wavenumber `end` visits, at most `step` apart in log k."""
+    walk = _Walk(solver, start, step)
+    for _ in walk.steps(end):
+        yield walk.now
+
+
 class _Walk:
     """The state of a walk along k: the last two modes, the step in log k, the collisions so far."""
 
-    def __init__(self, solver, start):
+    def __init__(self, solver, start, largest=_LARGEST_STEP):
         self.solver = solver
         self.before, self.now = None, start
-        self.step = _FIRST_STEP
+        self.step, self.largest = min(_FIRST_STEP, largest), largest
         self.collisions = []
         self.segments = [[start]]
 
     def to(self, k):
+        for _ in self.steps(k):
+            pass
+        return self.now
+
+    def steps(self, k):
+        """Step to wavenumber k, pausing after every attempt that moved."""
         for _ in range(_STEPS):
-            gap = log(k / self.now.k)
+            gap, last = log(k / self.now.k), self.now
             if gap == 0:
-                return self.now
-            target = k if abs(gap) <= self.step else self.now.k * exp(copysign(self.step, gap))
-            self._advance(target)
+                return
+            self._advance(k if abs(gap) <= self.step else self.now.k * exp(copysign(self.step, gap)))
+            if self.now is not last:
+                yield
         raise self._lost(f"{_STEPS} steps did not reach k = {k:g}")
 
     def _advance(self, k):
@@ -180,7 +194,7 @@ class _Walk:
             self._accept(mode)
             miss = abs(mode.rate - rate) / (abs(mode.rate) + abs(mode.k * mode.rate_slope)) + 1e-12
             factor = min(2.0, max(0.5, (_PREDICTION / miss) ** 0.25))
-            self.step = min(_LARGEST_STEP, max(length, self.step if length < self.step else 0) * factor)
+            self.step = min(self.largest, max(length, self.step if length < self.step else 0) * factor)
             return
         self.step = length / 3
         if self.step < 0.02 and self._cross(k):

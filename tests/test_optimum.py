@@ -39,6 +39,13 @@ def test_two_local_maxima():
     assert optimum.maxima[0].growth_rate > optimum.maxima[1].growth_rate > 0
 
 
+def test_growth_at_finite_k_is_found_where_long_waves_decay():
+    """Under a lid at depth 10 and Re = 0.01 long waves decay (A < 0), waves as short as the bed is deep grow."""
+    flow = flows.Dune(shields=3.0, depth=10.0, Re=0.01)
+    assert np.all(dispersion(flow, [1e-3, 1e-2, 0.1]).growth_rate < 0)
+    assert k_max(flow).k_max == pytest.approx(1.5531, abs=2e-4)
+
+
 @pytest.mark.parametrize(("Re", "kappa"), [(1e-4, 0.2375), (1e-6, 0.2370)])
 def test_small_reynolds_numbers_scale_with_the_root(Re, kappa):
     assert k_max(flows.Dune(Re=Re)).k_max == pytest.approx(kappa * np.sqrt(Re), rel=1e-3)
