@@ -63,10 +63,10 @@ def entries(series, count, degree, slopes=False):
     Returns rows, columns, values (entries,) of the matrix (count, degree+1). Only the band that a series of
     finite length leaves is visited: the cost is proportional to count times that length.
     """
-    length = len(np.trim_zeros(series, "b"))
+    series = series[: np.flatnonzero(series)[-1] + 1]
+    length = len(series)
     offset = np.arange(-length - 1, length + 2)
-    row = np.repeat(np.arange(count), len(offset))
-    column = row + np.tile(offset, count)
+    row, column = np.broadcast_arrays(np.arange(count)[:, None], np.arange(count)[:, None] + offset)
     inside = (column >= 0) & (column <= degree)
     row, column = row[inside], column[inside]
     if slopes:

@@ -83,13 +83,14 @@ class Assembly:
 class Solver:
     """Refines modes of one flow to a relative tolerance, within a largest degree.
 
-    The degree is raised until the truncation error is below `margin` * tolerance, or below rounding.
+    The degree is raised until the truncation error is a tenth of the tolerance asked for, or below
+    rounding; with the default tolerance until it is far below, since that costs little.
     """
 
-    def __init__(self, flow, tolerance=TOLERANCE, max_degree=DEGREES[-1], assembly=None, margin=1e-5):
+    def __init__(self, flow, tolerance=TOLERANCE, max_degree=DEGREES[-1], assembly=None):
         self.flow = flow
         self.tolerance = tolerance
-        self.margin = margin
+        self.truncation = 1e-5 * tolerance if tolerance == TOLERANCE else 0.1 * tolerance
         self.degrees = tuple(d for d in DEGREES if d <= max_degree) or (max_degree,)
         self.assembly = assembly or Assembly(flow)
         self.pencil = self.assembly.pencil
@@ -150,7 +151,7 @@ class Solver:
         return modes
 
     def _fits(self, mode):
-        return mode.truncation <= max(mode.rounding, self.margin * self.tolerance * abs(mode.sigma))
+        return mode.truncation <= max(mode.rounding, self.truncation * abs(mode.sigma))
 
     def next_degree(self, mode):
         """The degree to try first near this mode: one rung lower where it is over-resolved."""

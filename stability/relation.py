@@ -66,8 +66,8 @@ def dispersion(flow, k, mode=None, *, tolerance=TOLERANCE, max_degree=DEGREES[-1
 
     mode="surface" follows the slow surface mode from its long-wave limit (the default where the flow has
     one), "leading" follows the least stable mode of the smallest k (the default elsewhere), and
-    "most-unstable" takes the least stable mode of the spectrum at each k. `tolerance` bounds error / |sigma|. Raises NotResolved or
-    ModeLost; with strict=False the record says in `status` and `lost` what failed.
+    "most-unstable" takes the least stable mode of the spectrum at each k. `tolerance` bounds error / |sigma|.
+    Raises NotResolved or ModeLost; with strict=False the record says in `status` and `lost` what failed.
     """
     wavenumbers = check_wavenumbers(k)
     mode = mode or default_mode(flow)
@@ -96,7 +96,16 @@ def _surface(solver, wavenumbers):
 
 
 def _leading(solver, wavenumbers):
-    return _followed(solver, wavenumbers, lambda solver, k: leading_modes(solver, k, 1)[0])
+    """Follow the leading mode within its symmetry class, on half the domain where the flow has one."""
+    candidates = []
+    for half in solver.flow.halves():
+        one = solver if half == solver.flow else Solver(half, solver.tolerance, solver.degrees[-1])
+        try:
+            candidates.append((one, leading_modes(one, wavenumbers[0], 1)[0]))
+        except ModeLost as reason:
+            return {}, dict.fromkeys(wavenumbers.tolist(), str(reason)), ()
+    solver, first = max(candidates, key=lambda candidate: candidate[1].growth_rate)
+    return _followed(solver, wavenumbers, lambda solver, k: first)
 
 
 def _followed(solver, wavenumbers, first):

@@ -18,7 +18,7 @@ from .pencil import Weights
 from .threads import one_thread
 
 _SHIFT = 0.01 - 0.013j  # tried when the pencil is singular at rate 0
-_SINGULAR = 1e15  # condition number above which rate 0 is taken for an eigenvalue
+_SINGULAR = 1e14  # ratio of the two largest theta above which rate 0 is taken for an eigenvalue
 _SMALL = 10  # degree of the pencil whose finite eigenvalues are counted
 
 
@@ -55,9 +55,15 @@ def _theta(pencil, weights):
     rows = np.flatnonzero(np.any(b, axis=1))
     columns = np.zeros((len(a), len(rows)))
     columns[rows, np.arange(len(rows))] = 1
-    shift = _SHIFT if np.linalg.cond(a, 1) > _SINGULAR else 0.0
-    theta = np.linalg.eigvals(b[rows] @ np.linalg.solve(a - shift * b, columns))
-    return theta[np.argsort(-np.abs(theta))], shift
+    for shift in (0.0, _SHIFT):
+        try:
+            theta = np.linalg.eigvals(b[rows] @ np.linalg.solve(a - shift * b, columns))
+        except np.linalg.LinAlgError:
+            continue
+        theta = theta[np.argsort(-np.abs(theta))]
+        if np.abs(theta[0]) < _SINGULAR * np.abs(theta[1]):
+            break
+    return theta, shift
 
 
 def _finite_count(solver, degree):
@@ -109,7 +115,7 @@ def leading_modes(solver, k, count):
 def _converged_rates(solver, k, count):
     """Finite rates at the first degree at which the leading `count` agree with the degree before."""
     previous = None
-    for degree in solver.degrees[3:] or solver.degrees:
+    for degree in solver.degrees[4::2] or solver.degrees[-1:]:
         rates = finite_rates(solver, degree, solver.symbols(k))
         if previous is not None:
             lead = rates[:count]

@@ -57,3 +57,13 @@ def test_what_is_not_resolved_is_refused_or_marked():
 def test_bad_wavenumbers_are_refused():
     with pytest.raises(ParameterError, match=r"k must be positive and finite \(got -1\)"):
         spectrum(flows.Vortex(), -1.0)
+
+
+def test_the_halves_of_a_symmetric_flow_have_its_modes():
+    """Even and odd modes on half the domain are the modes of plane Poiseuille flow on the whole."""
+    flow = flows.Poiseuille(Re=2000.0)
+    whole = spectrum(flow, 1.0, 8)
+    parts = [mode for half in flow.halves() for mode in spectrum(half, 1.0, 8).modes]
+    for sigma, error in zip(whole.sigma, whole.error, strict=True):
+        nearest = min(parts, key=lambda mode: abs(mode.sigma - sigma))
+        assert abs(nearest.sigma - sigma) <= error + nearest.error

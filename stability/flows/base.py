@@ -50,6 +50,10 @@ class Flow:
         """Return the leading-order growth rate sigma of the slow surface mode as k -> 0."""
         raise ParameterError(f"{self.name} has no slow surface mode: ask for mode most-unstable")
 
+    def halves(self):
+        """Return flows whose modes together are those of this one: itself, or symmetry classes on half the domain."""
+        return (self,)
+
     @classmethod
     def has_surface_mode(cls):
         """Whether there is a slow surface mode to follow from k -> 0."""

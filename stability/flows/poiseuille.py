@@ -26,7 +26,38 @@ class Poiseuille(Flow):
         bottom, top = edges.fluid
         return bottom.v, bottom.w, top.v, top.w
 
+    def halves(self):
+        """Modes with w even or odd about the centreline, on 0 <= z <= 1."""
+        return EvenPoiseuille(self.Re), OddPoiseuille(self.Re)
 
-def profile(s, Re):
-    z = 2 * s - 1
-    return Profile(dz=2.0, U=1 - z**2, dU=-2 * z, eta=1 / Re, beta=1 / Re)
+
+@dataclass(frozen=True)
+class EvenPoiseuille(Poiseuille):
+    """The modes of plane Poiseuille flow with an even normal velocity (the unstable one is among them)."""
+
+    def layers(self, names):
+        return (Layer("fluid", lambda s: profile(s, self.Re, bottom=0)),)
+
+    def conditions(self, edges, names):
+        """On the centreline u and n are odd; no slip on the plate."""
+        centreline, plate = edges.fluid
+        return centreline.v, centreline.n, plate.v, plate.w
+
+    def halves(self):
+        return (self,)
+
+
+@dataclass(frozen=True)
+class OddPoiseuille(EvenPoiseuille):
+    """The modes of plane Poiseuille flow with an odd normal velocity."""
+
+    def conditions(self, edges, names):
+        """On the centreline w and t are odd; no slip on the plate."""
+        centreline, plate = edges.fluid
+        return centreline.w, centreline.t, plate.v, plate.w
+
+
+def profile(s, Re, bottom=-1):
+    """U = 1 - z^2 for bottom <= z <= 1."""
+    z = bottom + (1 - bottom) * s
+    return Profile(dz=1.0 - bottom, U=1 - z**2, dU=-2 * z, eta=1 / Re, beta=1 / Re)
