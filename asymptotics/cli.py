@@ -93,12 +93,14 @@ def _add_parameters(*verbs) -> None:
     """Flags of every flow: a flow is a module that costs sympy, so only when a verb needs them."""
     from . import flows
 
+    meanings: dict[tuple[str, str], list[str]] = {}
     for name in flows.names():
         for parameter in flows.load(name).PARAMETERS:
-            for verb in verbs:
-                if parameter.flag not in verb._option_string_actions:
-                    verb.add_argument(parameter.flag, dest=f"parameter {parameter.name}", metavar="V",
-                                      help=f"{parameter.meaning}, {parameter.range} ({name})")
+            meaning = f"{name}: {parameter.meaning}, {parameter.range}"
+            meanings.setdefault((parameter.flag, parameter.name), []).append(meaning)
+    for (flag, name), lines in meanings.items():
+        for verb in verbs:
+            verb.add_argument(flag, dest=f"parameter {name}", metavar="V", help="; ".join(lines))
 
 
 # -- verbs -----------------------------------------------------------------------------------------------
@@ -114,7 +116,8 @@ def _flows(arguments) -> int:
 
 def _describe(name: str, flow) -> str:
     lines = [f"{name}: {flow.SUMMARY}"]
-    lines += [f"  {parameter.flag:12} {parameter.range:22} {parameter.meaning}" for parameter in flow.PARAMETERS]
+    width = max(12, *(len(parameter.flag) for parameter in flow.PARAMETERS))
+    lines += [f"  {parameter.flag:{width}} {parameter.range:22} {parameter.meaning}" for parameter in flow.PARAMETERS]
     lines += [f"  --regime {regime:15} {limit.summary}; parameters {', '.join(limit.parameters)}; "
               f"order {limit.lowest} to {limit.available}, default {limit.default}"
               for regime, limit in flow.REGIMES.items()]

@@ -33,11 +33,12 @@ class Regime:
     step        distance between successive powers
     ignores     parameters of the flow that have no effect here
     accepts     says why a set of parameter values does not belong to the regime, or returns ""
+    numbers     parameters whose values, where given, are put in before the orders are solved, as keywords of `expand`
     """
 
     summary: str
     parameters: tuple[str, ...]
-    expand: Callable[[sp.Rational], Expansion]
+    expand: Callable[..., Expansion]
     default: sp.Rational
     available: sp.Rational
     beyond: str = "its integrals are not elementary (dilogarithms)"
@@ -45,6 +46,7 @@ class Regime:
     step: sp.Rational = sp.Integer(1)
     ignores: tuple[str, ...] = ()
     accepts: Callable[[Mapping], str] = lambda values: ""
+    numbers: tuple[str, ...] = ()
 
     def refusal(self, name: str, values: Mapping) -> str:
         """Why the values do not belong to this regime; empty if they do."""
@@ -91,7 +93,8 @@ def expand(flow_name: str, regime: str | None = None, order=None, **values) -> E
     exact = {name: known[name].read(value) for name, value in values.items()}
     chosen = regime_for(flow, regime, exact)
     limit = flow.REGIMES[chosen]
-    expansion = limit.expand(_power(order, chosen, limit))
+    beforehand = {name: exact[name] for name in limit.numbers if name in exact}
+    expansion = limit.expand(_power(order, chosen, limit), **beforehand)
     return expansion.with_parameters(**{name: value for name, value in exact.items() if name in limit.parameters})
 
 

@@ -92,6 +92,12 @@ def test_order_and_default_regime(capsys):
     (["expand", "dune", "--order", "1"], ["order", "4/3", "1"]),
     (["expand", "dune", "--order", "two"], ["order", "two"]),
     (["expand", "vortex", "--order", "99"], ["order", "99"]),
+    (["expand", "film", "--slope-deg", "180"], ["slope_deg", "< 180", "180"]),
+    (["expand", "film", "--Fr2", "1"], ["no parameter Fr2", "Re, slope_deg, We"]),
+    (["expand", "rollwave", "--mu1", "0.5", "--mu2", "0.4"], ["mu1 must be less than mu2", "0.4"]),
+    (["expand", "rollwave", "--mu1", "0.4", "--mu2", "0.6", "--slope-deg", "33"], ["slope_deg", "30.9638", "33"]),
+    (["expand", "two_layer_couette", "--order", "3"], ["order 3", "viscosity_ratio, depth_ratio, density_ratio"]),
+    (["expand", "two_layer_couete"], ["did you mean 'two_layer_couette'"]),
     (["expand"], ["FLOW", "--help"]),
     ([], ["VERB", "--help"]),
     (["expand", "dune", "--json", "--latex"], ["--latex"]),
@@ -117,6 +123,12 @@ def piped(capsys, monkeypatch, numerics, *arguments):
     (["dune", "--depth", "10", "--Re", "1", "--k", "1e-6:1e-4:7"], "dune"),
     (["dune", "--Re", "3", "--k", "1e-8:1e-6:9"], "dune"),
     (["vortex", "--k", "1e-2:1:13"], "vortex"),
+    (["film", "--k", "1e-4:1e-2:7"], "film"),
+    (["film", "--slope-deg", "120", "--We", "2", "--k", "1e-4:1e-2:7"], "film"),
+    (["rollwave", "--k", "1e-4:1e-2:7"], "rollwave"),
+    (["two_layer_couette", "--k", "1e-3:1e-1:7"], "two_layer_couette"),
+    (["two_layer_couette", "--depth-ratio", "0.7", "--density-ratio", "1.5", "--gravity", "3", "--k", "1e-4:1e-2:7"],
+     "two_layer_couette"),
 ])
 def test_the_two_programs_meet_in_a_pipe(capsys, monkeypatch, numerics, flow):
     status, out, err = piped(capsys, monkeypatch, numerics, flow)
@@ -124,10 +136,16 @@ def test_the_two_programs_meet_in_a_pipe(capsys, monkeypatch, numerics, flow):
     assert "agrees with the expected" in out.splitlines()[-1]
 
 
-def test_a_wrong_parameter_is_found(capsys, monkeypatch):
-    numerics = ["dune", "--depth", "10", "--Re", "1", "--k", "1e-6:1e-4:7"]
-    for wrong in (["--Re", "1.01"], ["--b", "1.01"], ["--shields", "2.02"]):
-        status, out, err = piped(capsys, monkeypatch, numerics, "dune", *wrong)
+@pytest.mark.parametrize(("numerics", "wrong"), [
+    (["dune", "--depth", "10", "--Re", "1", "--k", "1e-6:1e-4:7"],
+     (["--Re", "1.01"], ["--b", "1.01"], ["--shields", "2.02"])),
+    (["film", "--k", "1e-4:1e-2:7"], (["--Re", "10.1"], ["--slope-deg", "30.3"], ["--We", "0.01"])),
+    (["rollwave", "--k", "1e-4:1e-2:7"], (["--Fr2", "4.04"], ["--slope-deg", "28.28"], ["--mu1", "0.3857"])),
+    (["two_layer_couette", "--k", "1e-3:1e-1:7"], (["--Re", "10.1"], ["--viscosity-ratio", "2.02"])),
+])
+def test_a_wrong_parameter_is_found(capsys, monkeypatch, numerics, wrong):
+    for flags in wrong:
+        status, out, err = piped(capsys, monkeypatch, numerics, numerics[0], *flags)
         assert status == 3
         assert len(err.splitlines()) == 1
         assert "differs from the expected" in err
