@@ -153,36 +153,49 @@ def _grouped(places, across, part, values):
 
 
 class Factors:
-    """LU factors of a single bordered matrix; overwrites its band.
+    """LU factors of a stack (points, ...) of bordered matrices; overwrites their bands.
 
     Raises numpy's LinAlgError where a pivot vanishes.
     """
 
-    def __init__(self, matrix):
-        self._interior = matrix.interior
-        factor, self._solve = _BAND[matrix.band.dtype.kind]
-        self._lower, self._upper = matrix.lower, matrix.upper
-        self._lu, self._pivots, info = factor(matrix.band.T, matrix.lower, matrix.upper, overwrite_ab=True)
-        if info:
-            raise np.linalg.LinAlgError("singular interior")
-        self._bottom = matrix.bottom[:, : self._interior]
-        self._coupled = self._inner(matrix.right)
-        self._border = np.linalg.inv(matrix.bottom[:, self._interior:] - self._bottom @ self._coupled)
+    def __init__(self, stack):
+        factor, self._solve = _BAND[stack.flat.dtype.kind]
+        self._interior, self._lower, self._upper = stack.interior, stack.lower, stack.upper
+        self._factors = []
+        for band in stack.band:
+            lu, pivots, info = factor(band.T, stack.lower, stack.upper, overwrite_ab=True)
+            if info:
+                raise np.linalg.LinAlgError("singular interior")
+            self._factors.append((lu, pivots))
+        self._bottom = stack.bottom[..., : self._interior]
+        self._coupled = self._inner(stack.right)
+        self._border = np.linalg.inv(stack.bottom[..., self._interior:] - self._bottom @ self._coupled)
 
     def solve(self, f):
-        """Return z with M z = f."""
-        inner = self._inner(f[: self._interior])
-        border = self._border @ (f[self._interior:] - self._bottom @ inner)
-        return np.concatenate([inner - self._coupled @ border, border])
+        """Return z (points, size) with M z = f for each matrix M."""
+        inner = self._inner(f[:, : self._interior])
+        border = _times(self._border, f[:, self._interior:] - _times(self._bottom, inner))
+        return np.concatenate([inner - _times(self._coupled, border), border], axis=1)
 
     def solve_left(self, g):
-        """Return z with z^T M = g^T (no conjugation)."""
-        inner, border = g[: self._interior], g[self._interior:]
-        border = (border - inner @ self._coupled) @ self._border
-        return np.concatenate([self._inner(inner - border @ self._bottom, trans=1), border])
+        """Return z (points, size) with z^T M = g^T (no conjugation)."""
+        inner, border = g[:, : self._interior], g[:, self._interior:]
+        border = _times(border - _times(inner, self._coupled), self._border)
+        return np.concatenate([self._inner(inner - _times(border, self._bottom), trans=1), border], axis=1)
 
-    def _inner(self, f, trans=0):
-        return self._solve(self._lu, self._lower, self._upper, f, self._pivots, trans=trans)[0]
+    def _inner(self, right, trans=0):
+        """Solve with the bands: right is (points, interior) or (points, interior, several)."""
+        result = np.empty(right.shape, np.result_type(right, self._factors[0][0]))
+        for i, (lu, pivots) in enumerate(self._factors):
+            result[i] = self._solve(lu, self._lower, self._upper, right[i], pivots, trans=trans)[0]
+        return result
+
+
+def _times(left, right):
+    """Products of each matrix and vector of two stacks, in either order."""
+    if left.ndim > right.ndim:
+        return (left @ right[..., None])[..., 0]
+    return (left[:, None] @ right)[:, 0]
 
 
 def _where(mask, *arrays):

@@ -66,24 +66,20 @@ def refine_many(pencil, weights, rate, x, y):
     if pencil.real and not np.any(np.imag(rate)):
         rate, x, y = rate.real, x.real, y.real
     b = pencil.b(weights)
-    factors = [_factor(pencil, weights.at(i), value) for i, value in enumerate(rate)]
-    x, x_error = _iterate(lambda rows: _each(factors, Factors.solve, b @ rows), x)
-    y, y_error = _iterate(lambda rows: _each(factors, Factors.solve_left, rows @ b), y)
+    factors = _factors(pencil, weights, rate)
+    x, x_error = _iterate(lambda rows: factors.solve(b @ rows), x)
+    y, y_error = _iterate(lambda rows: factors.solve_left(rows @ b), y)
     settled = (x_error * y_error < 0.1 * _EPS) & (np.maximum(x_error, y_error) < 1e-6)
     return _quotient(pencil, weights, x, y, b, settled)
 
 
-def _factor(pencil, weights, rate):
+def _factors(pencil, weights, rate):
     for _ in range(3):
         try:
             return Factors(pencil.shifted(weights, rate))
-        except np.linalg.LinAlgError:  # the rate is an eigenvalue to the last bit
+        except np.linalg.LinAlgError:  # a rate is an eigenvalue to the last bit
             rate = rate * (1 + 4 * _EPS) + _TINY
-    raise ModeLost(f"the equations are singular at rate {complex(rate):.6g} and next to it")
-
-
-def _each(factors, solve, rows):
-    return np.array([solve(one, row) for one, row in zip(factors, rows, strict=True)])
+    raise ModeLost(f"the equations are singular near the rates {complex(rate.min()):.6g} .. {complex(rate.max()):.6g}")
 
 
 def _iterate(step, vectors):

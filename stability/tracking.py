@@ -91,21 +91,20 @@ def follow(solver, start, wavenumbers):
 
 
 def _between(solver, segments, wavenumbers):
-    """Modes at `wavenumbers`, all within the walk that visited `segments` (lists of modes without a collision)."""
-    found, guesses = {}, {}
+    """Modes at `wavenumbers`, within the walk that visited `segments` (lists of modes without a collision)."""
+    found, gaps = {}, {}
     for k in wavenumbers.tolist():
         nodes, index = _interval(segments, k)
         if nodes[index].k == k or len(nodes) == 1:
             found[k] = _Walk(solver, nodes[index]).to(k)
         else:
-            rate, degree, x, y = _interpolate(solver, nodes, index, log(k))
-            guesses.setdefault(degree, []).append((k, rate, x, y, nodes[index]))
-    for degree, group in guesses.items():
-        k, rates, x, y, nodes = zip(*group, strict=True)
-        modes = solver.solve_many(k, np.array(rates), degree, np.array(x), np.array(y))
-        for value, rate, node, mode in zip(k, rates, nodes, modes, strict=True):
-            near = mode is not None and abs(mode.rate - rate) < _DRIFT * (abs(rate) + abs(node.rate - rate))
-            found[value] = mode if near else _Walk(solver, node).to(value)
+            gaps.setdefault((id(nodes), index), (nodes, index, []))[2].append(k)
+    for nodes, index, inside in gaps.values():
+        rates, degree, x, y = _interpolate(solver, nodes, index, np.log(inside))
+        modes = solver.solve_many(inside, rates, degree, x, y)
+        for k, rate, mode in zip(inside, rates, modes, strict=True):
+            near = mode is not None and abs(mode.rate - rate) < _DRIFT * (abs(rate) + abs(nodes[index].rate - rate))
+            found[k] = mode if near else _Walk(solver, nodes[index]).to(k)
     return [found[k] for k in wavenumbers.tolist()]
 
 
@@ -124,28 +123,28 @@ def _interval(segments, k):
 
 
 def _interpolate(solver, nodes, index, t):
-    """Rate (cubic, values and slopes of two nodes) and vectors (cubic, four nodes) at log k = t."""
+    """Rates (cubic, values and slopes of two nodes) and vectors (cubic, four nodes) at log k = t (points,)."""
     here, there = nodes[index], nodes[index + 1]
     h = log(there.k / here.k)
     u = (t - log(here.k)) / h
     rise = there.rate - here.rate
     a, b = h * here.k * here.rate_slope - rise, rise - h * there.k * there.rate_slope
-    rate = here.rate + u * rise + u * (1 - u) * (a * (1 - u) + b * u)
+    rates = here.rate + u * rise + u * (1 - u) * (a * (1 - u) + b * u)
     degree = max(here.degree, there.degree)
     first = min(max(index - 1, 0), max(len(nodes) - 4, 0))
     used = nodes[first: first + 4]
     times = np.array([log(node.k) for node in used])
-    weights = [np.prod([(t - times[j]) / (times[i] - times[j]) for j in range(len(used)) if j != i])
-               for i in range(len(used))]
+    weights = np.array([np.prod([(t - times[j]) / (times[i] - times[j]) for j in range(len(used)) if j != i], axis=0)
+                        for i in range(len(used))])
     vectors = [transfer(solver, (node.degree, node.x, node.y), degree) for node in used]
-    return rate, degree, *(_blend(weights, rows, index - first) for rows in zip(*vectors, strict=True))
+    return rates, degree, *(_blend(weights, rows, index - first) for rows in zip(*vectors, strict=True))
 
 
 def _blend(weights, vectors, reference):
-    """Weighted sum of eigenvectors, each first given the scale of the one at `reference`."""
+    """Weighted sums (points, size) of eigenvectors, each first given the scale of the one at `reference`."""
     base = vectors[reference]
     size = np.vdot(base, base)
-    return sum(weight * size / np.vdot(base, vector) * vector for weight, vector in zip(weights, vectors, strict=True))
+    return weights.T @ np.array([size / np.vdot(base, vector) * vector for vector in vectors])
 
 
 def survey(solver, start, end, step):

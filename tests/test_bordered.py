@@ -49,14 +49,15 @@ def test_products_from_either_side(matrices):
 
 def test_solves_from_either_side(matrices):
     stack, _, full = matrices
-    weights = np.array([1.0, 0.25])
-    matrix, x = np.tensordot(weights, full, 1), np.random.default_rng(9).standard_normal(SIZE).astype(full.dtype)
+    weights = np.array([[1.0, 0.25], [-0.5, 2.0]])
+    both = np.tensordot(weights, full, 1)
+    x = np.random.default_rng(9).standard_normal((2, SIZE)).astype(full.dtype)
     factors = Factors(stack.combine(weights))
-    np.testing.assert_allclose(factors.solve(matrix @ x), x, atol=1e-11)
-    np.testing.assert_allclose(factors.solve_left(x @ matrix), x, atol=1e-11)
+    np.testing.assert_allclose(factors.solve(np.einsum("nrc,nc->nr", both, x)), x, atol=1e-11)
+    np.testing.assert_allclose(factors.solve_left(np.einsum("nr,nrc->nc", x, both)), x, atol=1e-11)
 
 
 def test_a_singular_matrix_is_named():
     entries = [(0, np.arange(5), np.arange(5), np.array([1.0, 1.0, 0.0, 1.0, 1.0]))]
     with pytest.raises(np.linalg.LinAlgError):
-        Factors(Bordered.from_entries(1, 3, 2, entries).combine(np.ones(1)))
+        Factors(Bordered.from_entries(1, 3, 2, entries).combine(np.ones((1, 1))))
