@@ -51,7 +51,7 @@ class Plane:
         self.tolerance, self.max_degree = tolerance, max_degree
         long_waves = flow.has_surface_mode()
         self.power = 2 if long_waves else 0  # growth of a surface mode is of the order of k^power in long waves
-        self.wavenumbers = np.geomspace(0.01, 20, 20) if long_waves else np.geomspace(0.1, 10, 13)
+        self.wavenumbers = np.geomspace(0.01, 20, 20) if long_waves else np.geomspace(0.1, 10, 11)
         self._first = _LOW  # rung of the degrees at which a look starts
         self._value = self._solver = None
 
