@@ -1,11 +1,13 @@
 """Neutral curves and critical points, and the derivatives they rest on."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from stability import NotResolved, ParameterError, flows, spectrum
+from stability.cli import main
 from stability.energy import condition_numbers, energy
 from stability.mode import Solver
 from stability.neutral import critical, critical_sweep, neutral_curve
@@ -141,3 +143,57 @@ def test_conditions_predict_the_loss_of_digits():
     modes = spectrum(flows.Poiseuille(), 1.0, 30, strict=False).modes
     digits = np.log10([mode.error for mode in modes])
     assert np.corrcoef(digits, np.log10(condition_numbers(modes)))[0, 1] > 0.9
+
+
+def run(capsys, *arguments):
+    status = main([*arguments, "--quiet"])
+    out, err = capsys.readouterr()
+    return status, out, err
+
+
+def test_critical_on_the_command_line(capsys):
+    status, out, _ = run(capsys, "critical", "film", "--vary", "Re", "--slope-deg", "45", "--json")
+    (row,) = json.loads(out)["rows"]
+    assert status == 0
+    assert list(row) == ["k", "Re", "phase_speed", "error", "k_error", "status"]
+    assert row["Re"] == pytest.approx(1.25, abs=1e-11)
+
+
+def test_neutral_on_the_command_line(capsys, tmp_path):
+    picture = tmp_path / "neutral.svg"
+    status, out, _ = run(capsys, "neutral", "rollwave", "--vary", "Fr2", "--over", "slope_deg=26,28", "--long-wave",
+                         "--json", "--plot", str(picture))
+    rows = json.loads(out)["rows"]
+    assert status == 0
+    assert picture.stat().st_size > 1000
+    assert list(rows[0]) == ["slope_deg", "k", "Fr2", "phase_speed", "error", "status"]
+    assert [0.4 * np.sqrt(row["Fr2"]) for row in rows] == pytest.approx([0.652983267151, 0.62042859109], abs=1e-11)
+
+
+def test_neutral_curve_on_the_command_line(capsys, tmp_path):
+    status, out, _ = run(capsys, "neutral", "film", "--vary", "Re", "--k", "0.1,0.2", "--json",
+                         "--plot", str(tmp_path / "curve.png"))
+    assert status == 0
+    assert [row["k"] for row in json.loads(out)["rows"]] == [0.1, 0.2]
+
+
+def test_nothing_found_is_exit_3(capsys):
+    status, out, _ = run(capsys, "critical", "vortex", "--vary", "Fr2", "--json")
+    assert status == 3
+    assert "stable at every Fr2" in json.loads(out)["rows"][0]["status"]
+
+
+@pytest.mark.parametrize(("arguments", "message"), [
+    (["critical", "film"], "--vary"),
+    (["critical", "film", "--vary", "theta"], "no numeric parameter 'theta' to vary; it has Re, slope_deg, We"),
+    (["neutral", "film", "--vary", "Re"], "one of the arguments --over --k is required"),
+    (["neutral", "film", "--vary", "Re", "--over", "Re=1,2"], "Re is the parameter to solve for"),
+    (["neutral", "film", "--vary", "Re", "--k", "1", "--long-wave"], "--long-wave: has no meaning with --k"),
+    (["neutral", "film", "--vary", "Re", "--k", "-1"], "--k"),
+])
+def test_bad_usage_is_exit_2(capsys, arguments, message):
+    status, out, err = run(capsys, *arguments)
+    assert status == 2
+    assert out == ""
+    assert message in err
+    assert err.count("\n") == 1
