@@ -137,7 +137,7 @@ def _comparison(found, figure, axes):
         if rows and rows[0].reported is not None:
             reported = np.maximum([one.reported / scale for one in rows], floor)
             axes[0].loglog(seconds, reported, "--", color=color, linewidth=0.8)
-    axes[0].set(xlabel="seconds per eigenvalue", ylabel="relative error (dashed: reported)")
+    axes[0].set(xlabel="CPU seconds per eigenvalue", ylabel="relative error (dashed: reported)")
     axes[0].legend()
 
 
