@@ -8,6 +8,7 @@ nothing is filtered by size.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -67,15 +68,17 @@ def _theta(pencil, weights):
 
 
 def _finite_count(solver, degree):
-    """How many eigenvalues are finite: one per degree for every layer that carries the rate, plus a constant.
+    """How many eigenvalues are finite: one per degree for every layer that carries the rate, plus a constant."""
+    return _smallest_count(solver.assembly) + (degree - _SMALL) * solver.assembly.system.dynamic_layers
 
-    The constant (conditions, surfaces) is read off the gap of the smallest pencil with all symbols 1.
-    """
-    small = solver.pencil(_SMALL)
+
+@lru_cache(maxsize=8)
+def _smallest_count(assembly):
+    """Finite eigenvalues at the smallest degree: read off the gap in theta with all symbols 1."""
+    small = assembly.pencil(_SMALL)
     ones = np.ones(len(small.parts))
     sizes = np.abs(_theta(small, Weights(ones, ones, ones))[0])
-    count = int(np.argmin(sizes[1:] / np.maximum(sizes[:-1], np.finfo(float).tiny))) + 1
-    return count + (degree - _SMALL) * solver.assembly.system.dynamic_layers
+    return int(np.argmin(sizes[1:] / np.maximum(sizes[:-1], np.finfo(float).tiny))) + 1
 
 
 @one_thread
