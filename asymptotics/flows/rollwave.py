@@ -102,7 +102,8 @@ def _between(values) -> str:
     """A steady flow needs mu1 < tan(slope) < mu2."""
     low, high = values.get("mu1", sp.Integer(0)), values.get("mu2", sp.oo)
     if not low < high:
-        return f"mu1 must be less than mu2, got mu1 = {low} and mu2 = {high}: friction must grow with the shear rate"
+        return (f"mu1 must be less than mu2, got mu1 = {float(low):g} and mu2 = {float(high):g}: "
+                "friction must grow with the shear rate")
     if "slope_deg" not in values or low < sp.tan(sp.pi * values["slope_deg"] / 180) < high:
         return ""
     limits = ", ".join(f"{float(sp.atan(mu) * 180 / sp.pi):g}" for mu in (low, high))

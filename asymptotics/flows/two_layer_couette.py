@@ -59,6 +59,11 @@ def linear_flow(name: str) -> Linearisation:
 
 
 @cache
+def matrix(name: str) -> sp.Matrix:
+    return long_wave(linear_flow(name).system(), _SCALE)
+
+
+@cache
 def shared(name: str) -> tuple[sp.Expr, ...]:
     """What the displaced interface has in common with both liquids, as one of them has it: velocities and tractions.
 
@@ -75,7 +80,7 @@ def shared(name: str) -> tuple[sp.Expr, ...]:
 def hierarchy(**values) -> Hierarchy:
     """Orders in kappa = i k; fields are polynomials in z. Parameters given as numbers make the orders cheap."""
     known = _in_units(values)
-    both = {name: Layer(name, z, long_wave(linear_flow(name).system().subs(known), _SCALE)) for name in SHEARS}
+    both = {name: Layer(name, z, matrix(name).subs(known)) for name in SHEARS}
 
     def edge(name, height, condition):
         return both[name].at(sp.sympify(height).subs(known), long_wave(condition.subs(known), _SCALE))

@@ -139,9 +139,9 @@ def test_the_two_programs_meet_in_a_pipe(capsys, monkeypatch, numerics, flow):
 @pytest.mark.parametrize(("numerics", "wrong"), [
     (["dune", "--depth", "10", "--Re", "1", "--k", "1e-6:1e-4:7"],
      (["--Re", "1.01"], ["--b", "1.01"], ["--shields", "2.02"])),
-    (["film", "--k", "1e-4:1e-2:7"], (["--Re", "10.1"], ["--slope-deg", "30.3"], ["--We", "0.01"])),
+    (["film", "--k", "1e-4:1e-2:7"], (["--Re", "10.1"], ["--slope-deg", "30.3"], ["--We", "1"])),
     (["rollwave", "--k", "1e-4:1e-2:7"], (["--Fr2", "4.04"], ["--slope-deg", "28.28"], ["--mu1", "0.3857"])),
-    (["two_layer_couette", "--k", "1e-3:1e-1:7"], (["--Re", "10.1"], ["--viscosity-ratio", "2.02"])),
+    (["two_layer_couette", "--k", "1e-6:1e-4:7"], (["--Re", "10.1"], ["--viscosity-ratio", "2.02"])),
 ])
 def test_a_wrong_parameter_is_found(capsys, monkeypatch, numerics, wrong):
     for flags in wrong:
