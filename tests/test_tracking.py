@@ -85,3 +85,19 @@ def test_without_a_long_wave_limit_the_surface_mode_is_lost(monkeypatch):
     monkeypatch.setattr(flows.Vortex, "long_wave", lambda self, k: 3.0 + 0 * k)
     with pytest.raises(ModeLost, match="no mode obeys the long-wave limit"):
         dispersion(flows.Vortex(), 1.0)
+
+
+def test_a_thick_ill_posed_bed_is_followed_without_jumps():
+    """At shields 12 internal modes crowd around the surface mode; loose step control lands on one of them."""
+    flow = flows.Dune(shields=12.0, Re=0.3)
+    alone = dispersion(flow, [8.1366])
+    for grid in (np.geomspace(1e-3, 8.1366, 60), np.geomspace(1e-2, 8.1366, 7)):
+        among = dispersion(flow, grid)
+        assert abs(among.sigma[-1] - alone.sigma[0]) <= among.error[-1] + alone.error[0]
+
+
+def test_loose_overlaps_would_jump(monkeypatch):
+    monkeypatch.setattr("stability.tracking._OVERLAP", 0.4)
+    flow = flows.Dune(shields=12.0, Re=0.3)
+    ends = [dispersion(flow, grid).sigma[-1] for grid in ([8.1366], np.geomspace(1e-3, 8.1366, 60))]
+    assert abs(ends[0] - ends[1]) > 100
