@@ -84,11 +84,13 @@ class Solver:
     """Refines modes of one flow to a relative tolerance, within a largest degree.
 
     The degree is raised until the truncation error is a tenth of the tolerance asked for, or below
-    rounding; with the default tolerance until it is far below, since that costs little.
+    rounding; with the default tolerance until it is far below, since that costs little. Without `bars`
+    errors are truncation alone.
     """
 
-    def __init__(self, flow, tolerance=TOLERANCE, max_degree=DEGREES[-1], assembly=None):
+    def __init__(self, flow, tolerance=TOLERANCE, max_degree=DEGREES[-1], assembly=None, bars=True):
         self.flow = flow
+        self.bars = bars
         self.tolerance = tolerance
         self.truncation = 1e-5 * tolerance if tolerance == TOLERANCE else 0.1 * tolerance
         self.degrees = tuple(d for d in DEGREES if d <= max_degree) or (max_degree,)
@@ -128,7 +130,7 @@ class Solver:
         for degree in self.degrees[start:]:
             pencil = self.pencil(degree)
             x, y = transfer(self, vectors, degree) if vectors else (None, None)
-            eigen = refine(pencil, self.weights([k], degree), rate, x, y)
+            eigen = refine(pencil, self.weights([k], degree), rate, x, y, self.bars)
             mode = self._mode(k, degree, eigen)
             if self._fits(mode):
                 break
@@ -144,7 +146,7 @@ class Solver:
         for first in range(0, len(rates), _TOGETHER):
             block = slice(first, first + _TOGETHER)
             weights = self.weights(wavenumbers[block], degree)
-            eigen = refine_many(pencil, weights, rates[block], x[block], y[block])
+            eigen = refine_many(pencil, weights, rates[block], x[block], y[block], self.bars)
             found = [self._mode(k, degree, eigen.at(i)) for i, k in enumerate(wavenumbers[block])]
             modes += [mode if settled and self._fits(mode) else None
                       for mode, settled in zip(found, eigen.settled, strict=True)]

@@ -18,7 +18,7 @@ from .tracking import follow, surface_mode, survey
 
 SEARCH = (1e-2, 100.0)  # default range of k; the lower end moves down until growth is a power law
 _ROUGH = 1e-4  # tolerance of the global look: small systems find the brackets
-_STEP = 0.25  # of the global look, in log k
+_STEP = 0.5  # largest of the global look, in log k
 _DECAYED = 10.0  # the look ends once the mode has decayed over this factor in k ...
 _SHORT = 10.0  # ... and waves are this short: a second branch may grow where the first has decayed
 _ITERATIONS = 20
@@ -99,7 +99,7 @@ def k_max_sweep(flows, search=SEARCH, *, tolerance=TOLERANCE, max_degree=DEGREES
 @one_thread
 def _optimum(flow, search, tolerance, max_degree, assembly):
     assembly = assembly.serving(flow) if assembly else Assembly(flow)
-    look = Solver(flow, max(tolerance, _ROUGH), max_degree, assembly)
+    look = Solver(flow, max(tolerance, _ROUGH), max_degree, assembly, bars=False)
     solver = Solver(flow, tolerance, max_degree, assembly)
     try:
         modes, status = _look(look, *search)

@@ -46,12 +46,12 @@ class Eigen:
         return Eigen(*(getattr(self, field.name)[index] for field in fields(self)))
 
 
-def refine(pencil, weights, rate, x=None, y=None):
+def refine(pencil, weights, rate, x=None, y=None, bars=True):
     """Iterate from one `rate` (and vectors (size,), if known) until the quotient has settled; raise ModeLost if not."""
     start = np.random.default_rng(1).standard_normal(pencil.size)
     x, y, rate = (np.array([value]) for value in (start if x is None else x, start if y is None else y, rate))
     for _ in range(_FACTORISATIONS):
-        eigen = refine_many(pencil, weights, rate, x, y)
+        eigen = refine_many(pencil, weights, rate, x, y, bars)
         if not np.isfinite(eigen.rate[0]):
             break
         if eigen.settled[0]:
@@ -60,8 +60,11 @@ def refine(pencil, weights, rate, x=None, y=None):
     raise ModeLost(f"inverse iteration near rate {complex(rate[0]):.6g} did not settle")
 
 
-def refine_many(pencil, weights, rate, x, y):
-    """Refine eigenvalues at many points with one factorisation each; `weights` are those of the points."""
+def refine_many(pencil, weights, rate, x, y, bars=True):
+    """Refine eigenvalues at many points with one factorisation each; `weights` are those of the points.
+
+    Without `bars` the rounding is left at 0: a rough look does not need it.
+    """
     y = y.conj()  # y^H, row vectors, from here on
     if pencil.real and not np.any(np.imag(rate)):
         rate, x, y = rate.real, x.real, y.real
@@ -70,7 +73,7 @@ def refine_many(pencil, weights, rate, x, y):
     x, x_error = _iterate(lambda rows: factors.solve(b @ rows), x)
     y, y_error = _iterate(lambda rows: factors.solve_left(rows @ b), y)
     settled = (x_error * y_error < 0.1 * _EPS) & (np.maximum(x_error, y_error) < 1e-6)
-    return _quotient(pencil, weights, x, y, b, settled)
+    return _quotient(pencil, weights, x, y, b, settled, bars)
 
 
 def _factors(pencil, weights, rate):
@@ -102,7 +105,7 @@ def _norm(rows):
     return np.sqrt((np.abs(rows) ** 2).sum(axis=1))
 
 
-def _quotient(pencil, weights, x, y, b, settled):
+def _quotient(pencil, weights, x, y, b, settled, bars):
     """Rayleigh quotients of the pairs (y row vectors), with slope in k and errors."""
     first = pencil.first_b
     c = (pencil.matrices.left_all(y) * x[:, None]).sum(axis=2)  # (points, parts)
@@ -113,9 +116,11 @@ def _quotient(pencil, weights, x, y, b, settled):
     y = y / norm[:, None]
     slope = (weights.slope * c * power).sum(axis=1) / norm
     spread = (weights.spread * np.abs(c * power)).sum(axis=1) / np.abs(norm)
-    entries = pencil.squares.combine(np.abs(weights.value * power) ** 2)
-    variance = (entries.left(np.abs(y) ** 2) * np.abs(x) ** 2).sum(axis=1)  # of matrix entries
-    variance += (np.abs(value * power) ** 2).sum(axis=1) / np.abs(norm) ** 2  # of the weights, common to a part
+    variance = np.zeros(len(x))
+    if bars:
+        entries = pencil.squares.combine(np.abs(weights.value * power) ** 2)
+        variance += (entries.left(np.abs(y) ** 2) * np.abs(x) ** 2).sum(axis=1)  # of matrix entries
+        variance += (np.abs(value * power) ** 2).sum(axis=1) / np.abs(norm) ** 2  # of the weights, common to a part
     beyond = np.abs(pencil.beyond(weights.value * power, x)).reshape(len(x), len(pencil.last), -1).sum(axis=2)
     truncation = (beyond * np.abs(y[:, pencil.last]).max(axis=2)).sum(axis=1)
     return Eigen(rate, slope, truncation, _EPS * np.sqrt(variance), spread, x, y.conj(), b @ x, y @ b, settled)

@@ -2,7 +2,8 @@
 
 The predictor extrapolates the rate (cubic, from values and slopes at two points) and the vectors
 (linear) in log k. A step is accepted when the new and old eigenvectors are biorthogonal partners,
-y_old^H B x_new * y_new^H B x_old near 1: between different modes the product vanishes.
+y_old^H B x_new * y_new^H B x_old near 1 (between different modes the product vanishes), and when the rates
+and slopes at its two ends fit one smooth curve.
 """
 
 from bisect import bisect_right
@@ -18,8 +19,10 @@ _FIRST_STEP = 0.3  # in log k
 _LARGEST_STEP = 0.6
 _SMALLEST_STEP = 1e-8
 _PREDICTION = 0.05  # relative error of the predictor at which the step length is kept
-_OVERLAP = 0.05  # largest deviation of the overlap from 1
+_BEND = 0.1  # largest departure of a step from the mean of its end slopes, relative
+_OVERLAP = 0.4  # largest deviation of the overlap from 1
 _STEPS = 2000
+_GRID = 0.05  # spacing in log k of the wavenumbers that a survey lands on
 _FEW = 3  # wavenumbers that are walked to one by one
 _DRIFT = 0.05  # largest relative difference of a refined rate from its interpolation
 _AGREEMENT = 0.03  # of the surface mode with its long-wave limit, in value and in slope
@@ -95,8 +98,9 @@ def _between(solver, segments, wavenumbers):
     found, gaps = {}, {}
     for k in wavenumbers.tolist():
         nodes, index = _interval(segments, k)
-        if nodes[index].k == k or len(nodes) == 1:
-            found[k] = _Walk(solver, nodes[index]).to(k)
+        exact = [node for node in nodes[index: index + 2] if node.k == k]
+        if exact or len(nodes) == 1:
+            found[k] = exact[0] if exact else _Walk(solver, nodes[0]).to(k)
         else:
             gaps.setdefault((id(nodes), index), (nodes, index, []))[2].append(k)
     for nodes, index, inside in gaps.values():
@@ -119,7 +123,8 @@ def _interval(segments, k):
         nearest = min(nodes[0], nodes[-1], key=lambda node: abs(log(node.k / k)))
         return [nearest], 0
     direction = copysign(1, nodes[-1].k - nodes[0].k)
-    return nodes, max(bisect_right(nodes, direction * k, key=lambda node: direction * node.k) - 1, 0)
+    index = bisect_right(nodes, direction * k, key=lambda node: direction * node.k) - 1
+    return nodes, min(max(index, 0), max(len(nodes) - 2, 0))
 
 
 def _interpolate(solver, nodes, index, t):
@@ -150,6 +155,8 @@ def _blend(weights, vectors, reference):
 def survey(solver, start, end, step):
     """Yield the modes that a walk from `start` to wavenumber `end` visits, at most `step` apart in log k."""
     walk = _Walk(solver, start, step)
+    walk.grid = np.geomspace(start.k, end, max(2, int(abs(log(end / start.k)) / _GRID)))
+    solver.prepare(walk.grid)
     for _ in walk.steps(end):
         yield walk.now
 
@@ -163,6 +170,7 @@ class _Walk:
         self.step, self.largest = min(_FIRST_STEP, largest), largest
         self.collisions = []
         self.segments = [[start]]
+        self.grid = None  # rising wavenumbers to land on, where functions of k are known beforehand
 
     def to(self, k):
         for _ in self.steps(k):
@@ -175,10 +183,17 @@ class _Walk:
             gap, last = log(k / self.now.k), self.now
             if gap == 0:
                 return
-            self._advance(k if abs(gap) <= self.step else self.now.k * exp(copysign(self.step, gap)))
+            self._advance(k if abs(gap) <= self.step else self._land(self.now.k * exp(copysign(self.step, gap))))
             if self.now is not last:
                 yield
         raise self._lost(f"{_STEPS} steps did not reach k = {k:g}")
+
+    def _land(self, k):
+        """The last grid point before k, if it lies ahead, else k."""
+        if self.grid is None:
+            return k
+        before = float(self.grid[max(np.searchsorted(self.grid, k) - 1, 0)])
+        return before if before > self.now.k else k
 
     def _advance(self, k):
         """Take one step to k, or shorten the step, or cross a collision."""
@@ -186,7 +201,7 @@ class _Walk:
         rate, vectors = self._predict(k)
         try:
             mode = self.solver.solve(k, rate, vectors, self.solver.next_degree(self.now))
-            deviation = abs(self._overlap(mode) - 1) if self._same_kind(mode) else np.inf
+            deviation = abs(self._overlap(mode) - 1) if self._same_kind(mode) and self._smooth(mode) else np.inf
         except ModeLost:
             deviation = np.inf
         if deviation < _OVERLAP:
@@ -200,6 +215,12 @@ class _Walk:
             return
         if self.step < _SMALLEST_STEP:
             raise self._lost(f"no mode overlaps its neighbour at k = {k:.6g}")
+
+    def _smooth(self, mode):
+        """Whether the rates and slopes at both ends of the step belong to one smooth curve in log k."""
+        h, rise = log(mode.k / self.now.k), mode.rate - self.now.rate
+        a, b = (h * end.k * end.rate_slope for end in (self.now, mode))
+        return abs(rise - (a + b) / 2) <= _BEND * (abs(rise) + abs(a) + abs(b)) + 1e-9 * abs(mode.rate)
 
     def _same_kind(self, mode):
         """Real stays real and complex stays complex, unless a collision has been found."""

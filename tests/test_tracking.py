@@ -96,8 +96,8 @@ def test_a_thick_ill_posed_bed_is_followed_without_jumps():
         assert abs(among.sigma[-1] - alone.sigma[0]) <= among.error[-1] + alone.error[0]
 
 
-def test_loose_overlaps_would_jump(monkeypatch):
-    monkeypatch.setattr("stability.tracking._OVERLAP", 0.4)
+def test_without_the_check_of_slopes_it_would_jump(monkeypatch):
+    monkeypatch.setattr("stability.tracking._BEND", 10.0)
     flow = flows.Dune(shields=12.0, Re=0.3)
     ends = [dispersion(flow, grid).sigma[-1] for grid in ([8.1366], np.geomspace(1e-3, 8.1366, 60))]
     assert abs(ends[0] - ends[1]) > 100
