@@ -28,7 +28,7 @@ def draw(result, path):
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(6.4, 2.8), layout="none" if _plain(result) else "constrained")
         if _plain(result):
-            figure.subplots_adjust(left=0.11, right=0.98, bottom=0.18, top=0.9, wspace=0.32)
+            figure.subplots_adjust(left=0.14, right=0.98, bottom=0.18, top=0.86, wspace=0.45)
         axes = figure.subplots(1, 2)
         if isinstance(result, DispersionRelation):
             _dispersion(result, *axes)
@@ -62,7 +62,9 @@ def _caption(result):
         return f"{result.flow}, k = {result.k:g}"
     if isinstance(result, list) or isinstance(result[0], WellPosedness):
         return str(result[0].flow)
-    return str(result[1][0].flow)
+    name, points = result
+    first = points[0].flow
+    return str(first).replace(f"{name}={getattr(first, name)}", f"{name} swept") if name else str(first)
 
 
 def _dispersion(relation, left, right):
