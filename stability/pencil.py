@@ -34,10 +34,6 @@ class Weights:
     slope: np.ndarray
     spread: np.ndarray
 
-    def at(self, index):
-        """Return the weights of one point."""
-        return Weights(self.value[index], self.slope[index], self.spread[index])
-
 
 class Pencil:
     """Constant matrices of A(k) - rate B(k) for one system and degree, and where its unknowns lie.
