@@ -57,33 +57,52 @@ def _transform(count):
     return matrix
 
 
-def entries(series, count, degree, slopes=False):
-    """Non-zero entries of the matrix from basis coefficients a_j to T-coefficients of series * f (or df/ds).
+def entries(series, slopes, count, degree):
+    """Non-zero entries of the matrices from basis coefficients a_j to T-coefficients of a series times f or df/ds.
 
-    Returns rows, columns, values (entries,) of the matrix (count, degree+1). Only the band that a series of
-    finite length leaves is visited: the cost is proportional to count times that length.
+    `series` lists the T-coefficients of each factor, `slopes` tells which of them multiply df/ds. Returns arrays
+    (entries,): the factor's index, row < count, column <= degree and value. They do not depend on `degree`: a
+    smaller system has a part of the same entries. Only the band that a series of finite length leaves is visited.
     """
-    series = series[: np.flatnonzero(series)[-1] + 1]
-    length = len(series)
-    offset = np.arange(-length - 1, length + 2)
-    row, column = np.broadcast_arrays(np.arange(count)[:, None], np.arange(count)[:, None] + offset)
+    lengths = np.array([np.flatnonzero(one)[-1] + 1 for one in series])
+    slopes = np.asarray(slopes)
+    found = []
+    for length, slope in sorted(set(zip(lengths.tolist(), slopes.tolist(), strict=True))):
+        chosen = np.flatnonzero((lengths == length) & (slopes == slope))
+        row, column = _band(length + 1, count, degree)
+        value = (_slope_values if slope else _values)(np.array([series[i][:length] for i in chosen]), row, column)
+        factor, cell = np.nonzero(value)
+        found.append((chosen[factor], row[cell], column[cell], value[factor, cell]))
+    return tuple(np.concatenate(arrays) for arrays in zip(*found, strict=True))
+
+
+def _band(reach, count, degree):
+    """Rows and columns (cells,) of the cells with |row - column| <= reach."""
+    row = np.arange(count)[:, None]
+    row, column = np.broadcast_arrays(row, row + np.arange(-reach, reach + 1))
     inside = (column >= 0) & (column <= degree)
-    row, column = row[inside], column[inside]
-    if slopes:
-        value = np.where(column > 0, 2 * _product(series, row, column - 1), 0)
-    else:
-        j = np.maximum(column, 1)
-        value = np.where(column > 1, 0.5 / j, 1.0) * _product(series, row, column)
-        value -= np.where(column > 2, 0.5 / np.maximum(j - 2, 1), 0.0) * _product(series, row, column - 2)
-    found = value != 0
-    return row[found], column[found], value[found]
+    return row[inside], column[inside]
+
+
+def _values(series, row, column):
+    """Entries (factors, cells) of series * f: phi_j is T_j / 2j - T_{j-2} / 2(j-2), less a constant."""
+    j = np.maximum(column, 1)
+    upper = np.where(column > 1, 0.5 / j, 1.0)
+    lower = np.where(column > 2, 0.5 / np.maximum(j - 2, 1), 0.0)
+    return upper * _product(series, row, column) - lower * _product(series, row, column - 2)
+
+
+def _slope_values(series, row, column):
+    """Entries (factors, cells) of series * df/ds: d phi_j / ds = 2 T_{j-1}."""
+    return np.where(column > 0, 2 * _product(series, row, column - 1), 0)
 
 
 def _product(series, row, column):
-    """Entries of the matrix that multiplies T-coefficients by a series: T_i T_m = (T_{i+m} + T_{|i-m|}) / 2."""
-    half = np.zeros(len(series) + 1, series.dtype)
-    half[:-1] = series / 2
-    half[0] = series[0]
+    """Entries of the matrices that multiply T-coefficients by a series: T_i T_m = (T_{i+m} + T_{|i-m|}) / 2."""
+    length = series.shape[1]
+    half = np.zeros((len(series), length + 1), series.dtype)
+    half[:, :-1] = series / 2
+    half[:, 0] = series[:, 0]
     column = np.maximum(column, 0)
-    difference, total = (np.minimum(index, len(series)) for index in (np.abs(row - column), row + column))
-    return (half[difference] + half[total]) * np.where(row == 0, 0.5, 1.0)
+    difference, total = (np.minimum(index, length) for index in (np.abs(row - column), row + column))
+    return (half[:, difference] + half[:, total]) * np.where(row == 0, 0.5, 1.0)

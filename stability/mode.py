@@ -1,6 +1,8 @@
 """One mode of one flow: its record, and the solver that refines it at the degree it needs."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -9,12 +11,14 @@ from .errors import NotResolved, ParameterError
 from .pencil import Pencil
 from .refine import refine, refine_many
 from .system import System
+from .table import Table
 
 DEGREES = (8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 128, 160, 192, 256, 320,
            384, 512)
 TOLERANCE = 1e-10  # default bound on error / |sigma| for a resolved mode
 
-_TOGETHER = 32  # points refined at once: their matrices stay in the cache
+_LEAST = 32  # degree of the smallest table of entries
+_TOGETHER = 16  # groups refined at once: their vectors stay in the cache
 _EPS = np.finfo(float).eps
 _ROUNDING = 3.0  # standard deviations of the accumulated rounding that the error bar spans
 
@@ -63,12 +67,19 @@ class Assembly:
     """The pencils of a system of equations, each degree assembled when first asked for."""
 
     def __init__(self, flow):
-        self.system = System(flow)
+        self._flow = flow
+        self._table = None
         self._pencils = {}
+
+    @cached_property
+    def system(self):
+        return System(self._flow)
 
     def pencil(self, degree):
         if degree not in self._pencils:
-            self._pencils[degree] = Pencil(self.system, degree)
+            if self._table is None or degree > self._table.degree:
+                self._table = Table(self.system, max(_LEAST, 1 << int(degree - 1).bit_length()))
+            self._pencils[degree] = Pencil(self._table, degree)
         return self._pencils[degree]
 
     def serving(self, flow):
@@ -111,7 +122,7 @@ class Solver:
         return self._symbols[float(k)]
 
     def weights(self, wavenumbers, degree):
-        """Return the weights (points, parts) of the pencil of a degree at several wavenumbers."""
+        """Return the weights (parts, points) of the pencil of a degree at several wavenumbers."""
         symbols = [self.symbols(k) for k in wavenumbers]
         columns = {name: np.array([point[name] for point in symbols]).T for name in symbols[0]}
         return self.pencil(degree).weights(columns)
@@ -120,8 +131,12 @@ class Solver:
         """sigma / rate at wavenumber k."""
         return k ** (1 + self.flow.order)
 
-    def solve(self, k, rate, vectors=None, degree=None):
-        """Return the mode next to `rate`, at the first degree that resolves it.
+    def rough(self, tolerance):
+        """Return a solver of the same equations, no more accurate than this and without bars."""
+        return Solver(self.flow, max(self.tolerance, tolerance), self.degrees[-1], self.assembly, bars=False)
+
+    def solve(self, k, rate, vectors=None, degree=None, glance=False):
+        """Return the mode next to `rate`, at the first degree that resolves it; at the first one tried for a `glance`.
 
         `vectors` is (degree, x, y) of a nearby mode, if known. Raises ModeLost where the iteration
         does not settle; a mode still unresolved at the largest degree is returned with that status.
@@ -132,22 +147,26 @@ class Solver:
             x, y = transfer(self, vectors, degree) if vectors else (None, None)
             eigen = refine(pencil, self.weights([k], degree), rate, x, y, self.bars)
             mode = self._mode(k, degree, eigen)
-            if self._fits(mode):
+            if glance or self._fits(mode):
                 break
             rate, vectors = eigen.rate, (degree, eigen.x, eigen.y)
         return mode
 
-    def solve_many(self, wavenumbers, rates, degree, x, y):
-        """Return the modes next to `rates` at many wavenumbers at once; None where more work is needed.
+    def solve_many(self, groups, guesses, degree):
+        """Return the modes at many wavenumbers at once, None where more work is needed.
 
-        `x`, `y` (points, size) are good guesses of the vectors at this degree.
+        `groups` are lists of neighbouring wavenumbers, which share a factorisation; `guesses` hold for each good
+        rates (points,) and right and left vectors (points, size) at this degree.
         """
-        pencil, modes = self.pencil(degree), []
-        for first in range(0, len(rates), _TOGETHER):
-            block = slice(first, first + _TOGETHER)
-            weights = self.weights(wavenumbers[block], degree)
-            eigen = refine_many(pencil, weights, rates[block], x[block], y[block], self.bars)
-            found = [self._mode(k, degree, eigen.at(i)) for i, k in enumerate(wavenumbers[block])]
+        modes = []
+        for first in range(0, len(groups), _TOGETHER):
+            chunk = slice(first, first + _TOGETHER)
+            wavenumbers = [k for group in groups[chunk] for k in group]
+            ends = np.cumsum([0, *(len(group) for group in groups[chunk])]).tolist()
+            eigen = refine_many(self.pencil(degree), self.weights(wavenumbers, degree),
+                                *(np.concatenate(parts) for parts in zip(*guesses[chunk], strict=True)),
+                                [slice(*pair) for pair in pairwise(ends)], self.bars)
+            found = [self._mode(k, degree, eigen.at(i)) for i, k in enumerate(wavenumbers)]
             modes += [mode if settled and self._fits(mode) else None
                       for mode, settled in zip(found, eigen.settled, strict=True)]
         return modes

@@ -13,19 +13,19 @@ form the border.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from . import chebyshev
-from .bordered import Bordered, Entries
+from .bordered import Bordered, Factors
 from .layer import FIELDS
-
-_TAIL = 8  # coefficients kept beyond the truncation, per equation
+from .stack import Stack
+from .table import TAIL
 
 
 @dataclass(frozen=True)
 class Weights:
-    """Scalars that multiply the constant matrices: arrays (parts,), or (points, parts) at several wavenumbers.
+    """Scalars that multiply the constant matrices: arrays (parts,), or (parts, points) at several wavenumbers.
 
     `slope` is d value / dk; `spread` is the uncertainty of the value where a symbol has one.
     """
@@ -34,110 +34,93 @@ class Weights:
     slope: np.ndarray
     spread: np.ndarray
 
+    def at(self, index):
+        """Return the weights of some of the points."""
+        return Weights(self.value[:, index], self.slope[:, index], self.spread[:, index])
+
 
 class Pencil:
-    """Constant matrices of A(k) - rate B(k) for one system and degree, and where its unknowns lie.
+    """Constant matrices of A(k) - rate B(k) for one degree, from a `table` that reaches it, and where unknowns lie.
 
-    The residual of the equations is (A - rate B) x. Attributes: `matrices`, a stack of `parts`; those from
-    `first_b` on carry the rate and belong to -B; `squares`, their squared moduli; `columns` and `rows` map
-    unknowns and equations to index arrays; `last` (equations, 2) are the last two rows of each equation;
-    `real` tells whether all matrices are real.
+    The residual of the equations is (A - rate B) x. Attributes: `parts`, monomials; those from `first_b` on carry
+    the rate and belong to -B; `stack` and `tail`, their `size` rows and the rows beyond; `columns` and `rows` map
+    unknowns and equations to index arrays; `last` (equations, 2) are the last two rows of each equation; `real`
+    tells whether all matrices are real.
     """
 
-    def __init__(self, system, degree):
-        self.degree = degree
-        self._place(system)
-        blocks = [*self._equation_blocks(system), *self._condition_blocks(system)]
-        self.parts = tuple(sorted({block[0] for block in blocks}, key=lambda part: ("rate" in part, part)))
-        self.first_b = sum("rate" not in part for part in self.parts)
+    def __init__(self, table, degree):
+        self.degree, self.parts, self.first_b = degree, table.parts, table.first_b
         self._symbols = tuple(sorted({name for part in self.parts for name in part} - {"rate"}))
         self._powers = np.array([[part.count(name) for name in self._symbols] for part in self.parts])
-        entries = [(self.parts.index(monomial), *entry) for monomial, *entry in blocks]
-        self._split_tail(entries, len(system.equations))
-        main = [(part, *_where(rows < self.size, rows, columns, values)) for part, rows, columns, values in entries]
-        self.matrices = Bordered.from_entries(len(self.parts), self.interior, self.size - self.interior, main)
-        self.squares = self.matrices.squared()
-        self._b = Entries([entry for entry in main if entry[0] >= self.first_b], self.size)
-        self.real = np.isrealobj(self.matrices.flat)
+        columns, rows = self._place(table)
+        reach = np.array([degree + equation.extra + TAIL for equation in table.system.equations]
+                         + [1] * len(table.system.conditions))
+        kept = (table.column <= degree) & (table.row < reach[table.equation])
+        entries = (table.part[kept], rows[table.equation[kept], table.row[kept]],
+                   columns[table.unknown[kept], table.column[kept]], table.value[kept])
+        self._entries, (part, row, column, value) = (tuple(array[side] for array in entries) for side in
+                                                     (entries[1] < self.size, entries[1] >= self.size))
+        self.stack = Stack(*self._entries, len(self.parts), (self.size, self.size))
+        self.tail = Stack(part, row - self.size, column, value, len(self.parts),
+                          (TAIL * len(table.system.equations), self.size))
+        self.real = np.isrealobj(table.value)
 
-    def _place(self, system):
-        """Number unknowns and rows: interior interleaved layer by layer, then the border."""
-        keys, width = [], self.degree + 1
-        for index, (field, equation) in enumerate(zip(system.fields, system.equations, strict=True)):
-            layer, place = divmod(index, len(FIELDS))
-            keys += [(layer, j, place, field, j + equation.extra - 1, equation.name)
-                     for j in range(1 - equation.extra, width)]
-        self.interior = len(keys)
-        self.columns = {field: np.full(width, -1) for field in system.fields}
-        self.rows = {equation.name: np.full(self.degree + equation.extra, -1) for equation in system.equations}
-        for position, (_, j, _, field, row, equation) in enumerate(sorted(keys)):
-            self.columns[field][j] = position
-            self.rows[equation][row] = position
-        self.size = self.interior
-        for name in (*system.fields, *system.surfaces):
-            free = self.columns.setdefault(name, np.full(1, -1)) < 0
-            self.columns[name][free] = self.size
-            self.size += int(free.sum())
-        self.rows["conditions"] = np.arange(self.interior, self.interior + len(system.conditions))
+    def _place(self, table):
+        """Number unknowns and rows: interior interleaved layer by layer, then the border, then the tails.
+
+        Returns the places of columns (unknowns, degree + 1) and of rows (equations and conditions, ...).
+        """
+        system, width = table.system, self.degree + 1
+        extra = np.array([equation.extra for equation in system.equations])
+        field, j = (index.ravel() for index in np.indices((len(system.fields), width)))
+        opposite = j >= 1 - extra[field]
+        field, j = field[opposite], j[opposite]
+        order = np.lexsort((field % len(FIELDS), j, field // len(FIELDS)))
+        field, j, self.interior = field[order], j[order], len(order)
+        columns = np.full((len(table.unknowns), width), -1)
+        columns[field, j] = np.arange(self.interior)
+        used = np.arange(width) < np.where(np.arange(len(columns)) < len(system.fields), width, 1)[:, None]
+        free = used & (columns < 0)
+        self.size = self.interior + int(free.sum())
+        columns[free] = np.arange(self.interior, self.size)
+        rows = np.full((len(extra) + len(system.conditions), width + int(extra.max()) + TAIL), -1)
+        rows[field, j - 1 + extra[field]] = np.arange(self.interior)
+        rows[len(extra):, 0] = np.arange(self.interior, self.interior + len(system.conditions))
+        self.columns = {name: places[mask] for name, places, mask in zip(table.unknowns, columns, used, strict=True)}
+        self.rows = {equation.name: rows[i, : self.degree + equation.extra]
+                     for i, equation in enumerate(system.equations)}
+        self.rows["conditions"] = rows[len(extra):, 0]
         self.last = np.array([self.rows[equation.name][-2:] for equation in system.equations])
-
-    def _equation_blocks(self, system):
-        """Yield (monomial, rows, columns, values) of every term; the tail of an equation follows the main rows."""
-        for index, equation in enumerate(system.equations):
-            tail = self.size + index * _TAIL + np.arange(_TAIL)
-            places = np.concatenate((self.rows[equation.name], tail))
-            for unknown, monomial, series in equation.terms:
-                rows, columns, values = chebyshev.entries(series, len(places), self.degree, unknown.endswith("'"))
-                yield monomial, places[rows], self.columns[unknown.rstrip("'")][columns], values
-
-    def _condition_blocks(self, system):
-        ends = chebyshev.at(np.array([0.0, 1.0]), self.degree)
-        for row, terms in zip(self.rows["conditions"], system.conditions, strict=True):
-            for unknown, monomial, series in terms:
-                name, _, end = unknown.partition("@")
-                columns = self.columns[name]
-                values = series[0] * (ends[int(end)] if end else np.ones(1))
-                yield monomial, np.full(len(columns), row), columns, values
-
-    def _split_tail(self, entries, equations):
-        """Keep the tail rows: `tail` (parts, tail rows, columns) on the few `tail_columns` that reach them."""
-        tails = [(part, *_where(rows >= self.size, rows - self.size, columns, values))
-                 for part, rows, columns, values in entries]
-        self.tail_columns = np.unique(np.concatenate([columns for _, _, columns, _ in tails]))
-        shape = (len(self.parts), equations * _TAIL, len(self.tail_columns))
-        self.tail = np.zeros(shape, np.result_type(*(values for *_, values in entries)))
-        for part, rows, columns, values in tails:
-            np.add.at(self.tail[part], (rows, np.searchsorted(self.tail_columns, columns)), values)
+        for i, count in enumerate(self.degree + extra):
+            rows[i, count: count + TAIL] = self.size + i * TAIL + np.arange(TAIL)
+        return columns, rows
 
     def weights(self, symbols):
         """Return the `Weights` for symbols {name: (value, slope, error)}, non-zero numbers or arrays (points,)."""
-        table = np.array([symbols[name] for name in self._symbols])  # (symbols, 3) or (symbols, 3, points)
-        value, slope, spread = (table[:, i].T for i in range(3))
-        product = np.prod(value[..., None, :] ** self._powers, axis=-1)
-        return Weights(product, product * (slope / value @ self._powers.T),
-                       np.abs(product) * (np.abs(spread / value) @ self._powers.T))
-
-    def shifted(self, weights, rate):
-        """Return A - rate B as a bordered band matrix."""
-        return self.matrices.combine(weights.value * self.powers(rate))
-
-    def b(self, weights):
-        """Return B as a sparse matrix with products from either side."""
-        return self._b.combine(-weights.value)
-
-    def beyond(self, weights, x):
-        """Return the residuals of x (points, size) in the tail rows, for weights (points, parts) of the parts."""
-        parts = self.tail @ x[:, self.tail_columns].T  # (parts, tail rows, points)
-        return (weights.T[:, None] * parts).sum(axis=0).T
+        value, slope, spread = np.array([symbols[name] for name in self._symbols]).swapaxes(0, 1)
+        powers = self._powers.reshape(*self._powers.shape, *[1] * (value.ndim - 1))
+        product = np.prod(value ** powers, axis=1)
+        return Weights(product, product * (self._powers @ (slope / value)),
+                       np.abs(product) * (self._powers @ np.abs(spread / value)))
 
     def powers(self, rate):
-        """Factor of every part in the residual: 1 in A, the rate in B; shape of rate, then (parts,)."""
-        return np.where(np.arange(len(self.parts)) < self.first_b, 1.0, np.asarray(rate)[..., None])
+        """Factor of every part in the residual: 1 in A, the rate in B; (parts,) then the shape of rate."""
+        inside = np.arange(len(self.parts)) < self.first_b
+        return np.where(inside.reshape(-1, *[1] * np.ndim(rate)), 1.0, rate)
+
+    def factors(self, weights, rate):
+        """Return LU factors of A - rate B for weights (parts,) of the parts."""
+        return Factors(self._bordered, weights * self.powers(rate))
+
+    @cached_property
+    def _bordered(self):
+        return Bordered(*self._entries, len(self.parts), self.interior, self.size - self.interior)
 
     def pair(self, weights):
         """Return A and B in full, each (size, size)."""
-        return self.shifted(weights, 0.0).dense(), self.b(weights).dense()
-
-
-def _where(mask, *arrays):
-    return tuple(array[mask] for array in arrays)
+        part, row, column, value = self._entries
+        value = value * weights.value[part]
+        full = np.zeros((2, self.size, self.size), value.dtype)
+        carries = part >= self.first_b
+        np.add.at(full, (carries.astype(int), row, column), np.where(carries, -value, value))
+        return full[0], full[1]

@@ -1,4 +1,4 @@
-"""Two-sided inverse iteration with Rayleigh quotient, for many wavenumbers of one pencil at once.
+"""Two-sided inverse iteration with Rayleigh quotient: one mode from a guess, or many wavenumbers at once.
 
 One LU factorisation of A - rate B near an eigenvalue serves both eigenvectors x and y. The two-sided
 Rayleigh quotient is then wrong only by the product of their errors, and the pair (y, x) yields
@@ -6,19 +6,25 @@ Rayleigh quotient is then wrong only by the product of their errors, and the pai
     d sigma / d anything = - y^H (d residual matrix) x / (y^H B x),
 
 hence the slope in k, the truncation error (y against the residual beyond the truncation) and the
-rounding error (y against a random rounding of every matrix entry). Arrays lead with the axis of points.
+rounding error (y against a random rounding of every matrix entry).
+
+Neighbouring wavenumbers share a factorisation M: the iteration x - M^{-1} (A - rate B) x, with the matrices of each
+wavenumber and its current quotient, converges to the eigenvector of that wavenumber (Neumaier 1985). Vectors are the
+columns of arrays (size, points) here.
 """
 
 from dataclasses import dataclass, fields
+from functools import lru_cache
 
 import numpy as np
 
-from .bordered import Factors
 from .errors import ModeLost
 
 _EPS = np.finfo(float).eps
 _TINY = np.finfo(float).tiny
 _FACTORISATIONS = 12
+_SWEEPS = 6  # of the shared iteration
+_OFFSET = 1e-3  # of a shared factorisation from its rate: it must not be singular
 
 
 @dataclass(frozen=True)
@@ -47,80 +53,154 @@ class Eigen:
 
 
 def refine(pencil, weights, rate, x=None, y=None, bars=True):
-    """Iterate from one `rate` (and vectors (size,), if known) until the quotient has settled; raise ModeLost if not."""
-    start = np.random.default_rng(1).standard_normal(pencil.size)
-    x, y, rate = (np.array([value]) for value in (start if x is None else x, start if y is None else y, rate))
-    for _ in range(_FACTORISATIONS):
-        eigen = refine_many(pencil, weights, rate, x, y, bars)
-        if not np.isfinite(eigen.rate[0]):
-            break
-        if eigen.settled[0]:
-            return eigen.at(0)
-        rate, x, y = eigen.rate, eigen.x, eigen.y
-    raise ModeLost(f"inverse iteration near rate {complex(rate[0]):.6g} did not settle")
+    """Iterate from a `rate` (and vectors (size,), if known) until the quotient has settled; raise ModeLost if not.
 
-
-def refine_many(pencil, weights, rate, x, y, bars=True):
-    """Refine eigenvalues at many points with one factorisation each; `weights` are those of the points.
-
-    Without `bars` the rounding is left at 0: a rough look does not need it.
+    `weights` are those of one point, (parts, 1).
     """
-    y = y.conj()  # y^H, row vectors, from here on
+    x, y = (_start(pencil.size) if vector is None else vector[:, None] for vector in (x, y))
+    y = y.conj()  # y^H from here on
+    stack, carrying = pencil.stack, _carrying(pencil, weights)
+    for _ in range(_FACTORISATIONS):
+        if pencil.real and not np.imag(rate):
+            rate, x, y = np.real(rate), x.real, y.real
+        factors = _factors(pencil, weights.value[:, 0], rate)
+        x, x_error = _iterate(lambda v, f=factors: f.solve(stack.total(carrying, stack.times(v))), x)
+        y, y_error = _iterate(lambda v, f=factors: f.solve_left(stack.total_left(carrying, v)), y)
+        rate = _rate(pencil, weights.value * stack.brackets(y, stack.times(x)))[0]
+        if not np.isfinite(rate):
+            break
+        settled = _settled(x_error, y_error)
+        if settled[0]:
+            return _quotient(pencil, weights, x, y, settled, bars).at(0)
+    raise ModeLost(f"inverse iteration near rate {complex(rate):.6g} did not settle")
+
+
+@lru_cache(maxsize=32)
+def _start(size):
+    """Where to start without a better guess: a random vector (size, 1)."""
+    return np.random.default_rng(1).standard_normal(size)[:, None]
+
+
+def refine_many(pencil, weights, rate, x, y, groups, bars=True):
+    """Refine good guesses of rates (points,) and vectors (points, size) at many points, whose `weights` are given.
+
+    `groups` are slices of neighbouring points: each shares the factorisation of its middle. Without `bars` the
+    rounding is left at 0: a rough look does not need it.
+    """
+    x, y = x.T, y.conj().T
     if pencil.real and not np.any(np.imag(rate)):
         rate, x, y = rate.real, x.real, y.real
-    b = pencil.b(weights)
-    factors = _factors(pencil, weights, rate)
-    x, x_error = _iterate(lambda rows: factors.solve(b @ rows), x)
-    y, y_error = _iterate(lambda rows: factors.solve_left(rows @ b), y)
-    settled = (x_error * y_error < 0.1 * _EPS) & (np.maximum(x_error, y_error) < 1e-6)
-    return _quotient(pencil, weights, x, y, b, settled, bars)
+    x, y = np.ascontiguousarray(x), np.ascontiguousarray(y)
+    shared = [_Shared(pencil, weights.at([(group.start + group.stop) // 2]), rate, x, y, group) for group in groups]
+    x_change = y_change = np.zeros(len(rate))
+    for _ in range(_SWEEPS):
+        products = pencil.stack.times(x)
+        total = weights.value * pencil.powers(_rate(pencil, weights.value * pencil.stack.brackets(y, products)))
+        right, left = pencil.stack.total(total, products), pencil.stack.total_left(total, y)
+        dx, dy = (np.concatenate(parts, axis=1) for parts in
+                  zip(*(one.steps(right[:, one.group], left[:, one.group]) for one in shared), strict=True))
+        x, y = x - dx, y - dy
+        x_change, x_error = _converging(dx, x, x_change)
+        y_change, y_error = _converging(dy, y, y_change)
+        settled = _settled(x_error, y_error)
+        if np.all(settled):
+            break
+    return _quotient(pencil, weights, x, y, settled, bars)
+
+
+class _Shared:
+    """The factorisation M of the middle of a group of points, with its eigenvectors.
+
+    M is nearly singular: a step would be mostly along them. That component is the scale of the vectors, and is
+    taken out.
+    """
+
+    def __init__(self, pencil, weights, rate, x, y, group):
+        middle = slice((group.start + group.stop) // 2, (group.start + group.stop) // 2 + 1)
+        self.group = group
+        self._factors = _factors(pencil, weights.value[:, 0], rate[middle][0] * (1 + _OFFSET))
+        carrying = _carrying(pencil, weights)
+        self._x = self._factors.solve(pencil.stack.total(carrying, pencil.stack.times(x[:, middle])))
+        self._y = self._factors.solve_left(pencil.stack.total_left(carrying, y[:, middle]))
+        self._bx = pencil.stack.total(carrying, pencil.stack.times(self._x))
+        self._by = pencil.stack.total_left(carrying, self._y)
+        self._norm = (self._by * self._x).sum()
+
+    def steps(self, right, left):
+        """Return M^{-1} right and left M^{-1} without their components along the eigenvectors of M."""
+        dx, dy = self._factors.solve(right), self._factors.solve_left(left)
+        return (dx - self._x * ((self._by * dx).sum(axis=0) / self._norm),
+                dy - self._y * ((self._bx * dy).sum(axis=0) / self._norm))
 
 
 def _factors(pencil, weights, rate):
     for _ in range(3):
         try:
-            return Factors(pencil.shifted(weights, rate))
-        except np.linalg.LinAlgError:  # a rate is an eigenvalue to the last bit
+            return pencil.factors(weights, rate)
+        except np.linalg.LinAlgError:  # the rate is an eigenvalue to the last bit
             rate = rate * (1 + 4 * _EPS) + _TINY
-    raise ModeLost(f"the equations are singular near the rates {complex(rate.min()):.6g} .. {complex(rate.max()):.6g}")
+    raise ModeLost(f"the equations are singular near the rate {complex(rate):.6g}")
 
 
-def _iterate(step, vectors):
-    """Two inverse iterations with one factorisation; return the vectors and an estimate of their errors.
+def _carrying(pencil, weights):
+    """The weights of the parts as they add up to B: 0 for those that do not carry the rate."""
+    return np.concatenate([np.zeros_like(weights.value[: pencil.first_b]), -weights.value[pencil.first_b:]])
+
+
+def _iterate(step, vector):
+    """Two inverse iterations with one factorisation; return the vector and an estimate of its error.
 
     Vectors are scaled by one component. The second step shrinks what the first one changed by the
     ratio of the distances to the wanted and the next eigenvalue, and so will the next.
     """
-    points = np.arange(len(vectors))
-    pivot = np.argmax(np.abs(vectors), axis=1)
-    start, first = (rows / rows[points, pivot, None] for rows in (vectors, step(vectors)))
+    pivot = np.argmax(np.abs(vector[:, 0]))
+    start, first = (v / v[pivot] for v in (vector, step(vector)))
     second = step(first)
-    second = second / second[points, pivot, None]
-    change = _norm(second - first)
-    ratio = change / (_norm(first - start) + _TINY)
-    return second, np.minimum(1.0, ratio) * change / _norm(second) + _EPS
+    second = second / second[pivot]
+    change, error = _converging(second - first, second, _size(first - start) / _size(second))
+    return second, error
 
 
-def _norm(rows):
-    return np.sqrt((np.abs(rows) ** 2).sum(axis=1))
+def _converging(step, vectors, before):
+    """Relative length of the last step, and the error left, given the length of the step before."""
+    change = _size(step) / _size(vectors)
+    return change, change**2 / np.maximum(np.maximum(change, before), _TINY) + _EPS
 
 
-def _quotient(pencil, weights, x, y, b, settled, bars):
-    """Rayleigh quotients of the pairs (y row vectors), with slope in k and errors."""
-    first = pencil.first_b
-    c = (pencil.matrices.left_all(y) * x[:, None]).sum(axis=2)  # (points, parts)
-    value = weights.value * c
-    norm = -value[:, first:].sum(axis=1)  # y B x
-    rate = value[:, :first].sum(axis=1) / norm
+def _settled(x_error, y_error):
+    """Whether the quotient of two vectors with these errors is right to rounding."""
+    return (x_error * y_error < 0.1 * _EPS) & (np.maximum(x_error, y_error) < 1e-6)
+
+
+def _size(vectors):
+    return np.sqrt((np.abs(vectors) ** 2).sum(axis=0))
+
+
+def _rate(pencil, value):
+    """Rayleigh quotients from the brackets of all parts (parts, points)."""
+    return -value[: pencil.first_b].sum(axis=0) / value[pencil.first_b:].sum(axis=0)
+
+
+def _quotient(pencil, weights, x, y, settled, bars):
+    """Rayleigh quotients of the pairs (y^H, x), with slope in k and errors."""
+    stack, first = pencil.stack, pencil.first_b
+    products = stack.times(x)
+    brackets = stack.brackets(y, products)
+    value = weights.value * brackets
+    norm = -value[first:].sum(axis=0)  # y B x
+    rate = value[:first].sum(axis=0) / norm
     power = pencil.powers(rate)
-    y = y / norm[:, None]
-    slope = (weights.slope * c * power).sum(axis=1) / norm
-    spread = (weights.spread * np.abs(c * power)).sum(axis=1) / np.abs(norm)
-    variance = np.zeros(len(x))
+    y = y / norm
+    slope = (weights.slope * brackets * power).sum(axis=0) / norm
+    spread = (weights.spread * np.abs(brackets * power)).sum(axis=0) / np.abs(norm)
+    variance = np.zeros(len(norm))
     if bars:
-        entries = pencil.squares.combine(np.abs(weights.value * power) ** 2)
-        variance += (entries.left(np.abs(y) ** 2) * np.abs(x) ** 2).sum(axis=1)  # of matrix entries
-        variance += (np.abs(value * power) ** 2).sum(axis=1) / np.abs(norm) ** 2  # of the weights, common to a part
-    beyond = np.abs(pencil.beyond(weights.value * power, x)).reshape(len(x), len(pencil.last), -1).sum(axis=2)
-    truncation = (beyond * np.abs(y[:, pencil.last]).max(axis=2)).sum(axis=1)
-    return Eigen(rate, slope, truncation, _EPS * np.sqrt(variance), spread, x, y.conj(), b @ x, y @ b, settled)
+        variance += (np.abs(weights.value * power) ** 2 * stack.squares(y, x)).sum(axis=0)  # of matrix entries
+        variance += (np.abs(value * power) ** 2).sum(axis=0) / np.abs(norm) ** 2  # of the weights, common to a part
+    tail = np.abs(pencil.tail.total(weights.value * power, pencil.tail.times(x)))
+    beyond = tail.reshape(len(pencil.last), -1, len(norm)).sum(axis=1)
+    truncation = (beyond * np.abs(y[pencil.last]).max(axis=1)).sum(axis=0)
+    carrying = _carrying(pencil, weights)
+    bx, by = stack.total(carrying, products), stack.total_left(carrying, y)
+    return Eigen(rate, slope, truncation, _EPS * np.sqrt(variance), spread, *(
+        np.ascontiguousarray(vectors.T) for vectors in (x, y.conj(), bx, by)), settled)

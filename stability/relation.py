@@ -7,11 +7,14 @@ import numpy as np
 
 from .errors import ModeLost, ParameterError
 from .mode import DEGREES, TOLERANCE, Solver, check_wavenumbers, require
-from .spectra import leading_modes
+from .spectra import converged_rates, leading_modes, polished
 from .threads import one_thread
 from .tracking import follow, surface_mode
 
 MODES = ("surface", "leading", "most-unstable")
+
+_ROUGH = 1e-4  # tolerance of the way to the first wavenumber
+_CLOSE = 1e-2  # relative distance of leading rates within which both are computed properly
 
 
 @dataclass(frozen=True)
@@ -92,27 +95,37 @@ def default_mode(flow):
 
 
 def _surface(solver, wavenumbers):
-    return _followed(solver, wavenumbers, surface_mode)
+    """Follow the surface mode, roughly on the way from its long-wave limit to the first wavenumber."""
+    k = wavenumbers[0]
+    rough = solver.rough(_ROUGH)
+    try:
+        way = follow(rough, surface_mode(rough, k), [k])
+        if way.lost or way.collisions:  # a close look is needed
+            return _followed(solver, wavenumbers, surface_mode(solver, k))
+        (near,) = way.modes
+        return _followed(solver, wavenumbers, solver.solve(k, near.rate, (near.degree, near.x, near.y)))
+    except ModeLost as reason:
+        return {}, dict.fromkeys(wavenumbers.tolist(), str(reason)), ()
 
 
 def _leading(solver, wavenumbers):
     """Follow the leading mode within its symmetry class, on half the domain where the flow has one."""
-    candidates = []
-    for half in solver.flow.halves():
-        one = solver if half == solver.flow else Solver(half, solver.tolerance, solver.degrees[-1])
-        try:
-            candidates.append((one, leading_modes(one, wavenumbers[0], 1)[0]))
-        except ModeLost as reason:
-            return {}, dict.fromkeys(wavenumbers.tolist(), str(reason)), ()
-    solver, first = max(candidates, key=lambda candidate: candidate[1].growth_rate)
-    return _followed(solver, wavenumbers, lambda solver, k: first)
+    k = float(wavenumbers[0])
+    try:
+        halves = [solver if half == solver.flow else Solver(half, solver.tolerance, solver.degrees[-1])
+                  for half in solver.flow.halves()]
+        dense = [converged_rates(half, k, 1) for half in halves]
+        best = max(rates[0].real for rates, _ in dense)
+        rivals = [(polished(half, k, 1, *found)[0], half) for half, found in zip(halves, dense, strict=True)
+                  if found[0][0].real > best - _CLOSE * abs(found[0][0])]
+        first, solver = max(rivals, key=lambda rival: rival[0].growth_rate)
+        return _followed(solver, wavenumbers, first)
+    except ModeLost as reason:
+        return {}, dict.fromkeys(wavenumbers.tolist(), str(reason)), ()
 
 
 def _followed(solver, wavenumbers, first):
-    try:
-        path = follow(solver, first(solver, wavenumbers[0]), wavenumbers)
-    except ModeLost as reason:
-        return {}, dict.fromkeys(wavenumbers.tolist(), str(reason)), ()
+    path = follow(solver, first, wavenumbers)
     found = {mode.k: mode for mode in path.modes}
     return found, {k: path.lost for k in wavenumbers.tolist() if k not in found}, path.collisions
 

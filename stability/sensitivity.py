@@ -78,7 +78,7 @@ def _in_equation(pencil, mode, rows, terms):
     """y^H times the terms of one equation."""
     total = 0.0
     for unknown, factor, series in terms:
-        row, column, values = chebyshev.entries(series, len(rows), pencil.degree, unknown.endswith("'"))
+        _, row, column, values = chebyshev.entries([series], [unknown.endswith("'")], len(rows), pencil.degree)
         places = pencil.columns[unknown.rstrip("'")][column]
         total += factor * (mode.y.conj()[rows[row]] * values) @ mode.x[places]
     return total

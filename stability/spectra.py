@@ -102,7 +102,11 @@ def leading_modes(solver, k, count):
 
     Raises ModeLost where none of them settles.
     """
-    rates, degree = _converged_rates(solver, k, count)
+    return polished(solver, k, count, *converged_rates(solver, k, count))
+
+
+def polished(solver, k, count, rates, degree):
+    """Refine the first `count` of the dense eigenvalues of a degree that lead to modes."""
     found = []
     for rate in rates:
         mode = _polish(solver, k, rate, degree)
@@ -115,8 +119,8 @@ def leading_modes(solver, k, count):
     return sorted(found, key=lambda mode: -mode.growth_rate)
 
 
-def _converged_rates(solver, k, count):
-    """Finite rates at the first degree at which the leading `count` agree with the degree before."""
+def converged_rates(solver, k, count):
+    """Finite rates at the first degree at which the leading `count` agree with the degree before, and that degree."""
     previous = None
     for degree in solver.degrees[4::2] or solver.degrees[-1:]:
         rates = finite_rates(solver, degree, solver.symbols(k))

@@ -7,6 +7,7 @@ and slopes at its two ends fit one smooth curve.
 """
 
 from bisect import bisect_right
+from contextlib import suppress
 from dataclasses import dataclass
 from math import copysign, exp, log
 
@@ -24,6 +25,8 @@ _OVERLAP = 0.4  # largest deviation of the overlap from 1
 _STEPS = 2000
 _GRID = 0.05  # spacing in log k of the wavenumbers that a survey lands on
 _FEW = 3  # wavenumbers that are walked to one by one
+_MANY = 6  # wavenumbers between two nodes that are refined one by one
+_ANCHORS = 2  # of more than these, so many become nodes first
 _DRIFT = 0.05  # largest relative difference of a refined rate from its interpolation
 _AGREEMENT = 0.03  # of the surface mode with its long-wave limit, in value and in slope
 
@@ -62,13 +65,17 @@ def surface_mode(solver, k):
     for _ in range(16):
         guess, ahead = solver.flow.long_wave(np.array([k, 1.01 * k]))
         exponent = np.log(ahead / guess) / log(1.01)
-        try:
-            mode = solver.solve(k, guess / solver.width(k))
-        except ModeLost:
-            mode = None
-        if mode is not None and abs(mode.sigma / guess - 1) < _AGREEMENT \
-                and abs(mode.k * mode.slope / mode.sigma - exponent) < _AGREEMENT:
-            return mode
+
+        def agrees(mode, guess=guess, exponent=exponent):
+            return abs(mode.sigma / guess - 1) < _AGREEMENT \
+                and abs(mode.k * mode.slope / mode.sigma - exponent) < _AGREEMENT
+
+        with suppress(ModeLost):
+            mode = solver.solve(k, guess / solver.width(k), glance=True)
+            if agrees(mode):
+                mode = solver.solve(k, mode.rate, (mode.degree, mode.x, mode.y))
+                if agrees(mode):
+                    return mode
         k = k / 5
     raise ModeLost(f"{solver.flow}: no mode obeys the long-wave limit down to k = {k:.1e}")
 
@@ -94,7 +101,11 @@ def follow(solver, start, wavenumbers):
 
 
 def _between(solver, segments, wavenumbers):
-    """Modes at `wavenumbers`, within the walk that visited `segments` (lists of modes without a collision)."""
+    """Modes at `wavenumbers`, within the walk that visited `segments` (lists of modes without a collision).
+
+    Where many are asked for between two nodes, a few of them become nodes first; the others then share
+    factorisations.
+    """
     found, gaps = {}, {}
     for k in wavenumbers.tolist():
         nodes, index = _interval(segments, k)
@@ -103,13 +114,38 @@ def _between(solver, segments, wavenumbers):
             found[k] = exact[0] if exact else _Walk(solver, nodes[0]).to(k)
         else:
             gaps.setdefault((id(nodes), index), (nodes, index, []))[2].append(k)
+    first, second = [], []
     for nodes, index, inside in gaps.values():
-        rates, degree, x, y = _interpolate(solver, nodes, index, np.log(inside))
-        modes = solver.solve_many(inside, rates, degree, x, y)
-        for k, rate, mode in zip(inside, rates, modes, strict=True):
-            near = mode is not None and abs(mode.rate - rate) < _DRIFT * (abs(rate) + abs(nodes[index].rate - rate))
-            found[k] = mode if near else _Walk(solver, nodes[index]).to(k)
+        coarse = inside if len(inside) <= _MANY else inside[:: -(-len(inside) // _ANCHORS)]
+        first += [(nodes, index, [k]) for k in coarse]
+    found |= _refined(solver, first)
+    for nodes, _, inside in gaps.values():
+        finer = sorted([*nodes, *(found[k] for k in inside if k in found)], key=lambda node: node.k)
+        rest = {}
+        for k in inside:
+            if k not in found:
+                rest.setdefault(_interval([finer], k)[1], []).append(k)
+        second += [(finer, place, ks) for place, ks in rest.items()]
+    found |= _refined(solver, second)
     return [found[k] for k in wavenumbers.tolist()]
+
+
+def _refined(solver, groups):
+    """{k: mode} for groups (nodes, index, wavenumbers between nodes index and index + 1), refined together.
+
+    Each group shares a factorisation; what does not settle next to its interpolation is walked to.
+    """
+    batches, found = {}, {}
+    for nodes, index, inside in groups:
+        batches.setdefault(max(nodes[index].degree, nodes[index + 1].degree), []).append((nodes, index, inside))
+    for degree, batch in batches.items():
+        guesses = [_interpolate(solver, nodes, index, np.log(inside), degree) for nodes, index, inside in batch]
+        modes = iter(solver.solve_many([inside for *_, inside in batch], guesses, degree))
+        for (nodes, index, inside), (rates, *_) in zip(batch, guesses, strict=True):
+            for k, rate, mode in zip(inside, rates, modes, strict=False):
+                near = mode is not None and abs(mode.rate - rate) < _DRIFT * (abs(rate) + abs(nodes[index].rate - rate))
+                found[k] = mode if near else _Walk(solver, nodes[index]).to(k)
+    return found
 
 
 def _interval(segments, k):
@@ -127,7 +163,7 @@ def _interval(segments, k):
     return nodes, min(max(index, 0), max(len(nodes) - 2, 0))
 
 
-def _interpolate(solver, nodes, index, t):
+def _interpolate(solver, nodes, index, t, degree):
     """Rates (cubic, values and slopes of two nodes) and vectors (cubic, four nodes) at log k = t (points,)."""
     here, there = nodes[index], nodes[index + 1]
     h = log(there.k / here.k)
@@ -135,14 +171,13 @@ def _interpolate(solver, nodes, index, t):
     rise = there.rate - here.rate
     a, b = h * here.k * here.rate_slope - rise, rise - h * there.k * there.rate_slope
     rates = here.rate + u * rise + u * (1 - u) * (a * (1 - u) + b * u)
-    degree = max(here.degree, there.degree)
     first = min(max(index - 1, 0), max(len(nodes) - 4, 0))
     used = nodes[first: first + 4]
     times = np.array([log(node.k) for node in used])
     weights = np.array([np.prod([(t - times[j]) / (times[i] - times[j]) for j in range(len(used)) if j != i], axis=0)
                         for i in range(len(used))])
     vectors = [transfer(solver, (node.degree, node.x, node.y), degree) for node in used]
-    return rates, degree, *(_blend(weights, rows, index - first) for rows in zip(*vectors, strict=True))
+    return rates, *(_blend(weights, rows, index - first) for rows in zip(*vectors, strict=True))
 
 
 def _blend(weights, vectors, reference):

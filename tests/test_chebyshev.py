@@ -37,7 +37,7 @@ def test_entries_multiply_a_field_or_its_slope_by_a_series(count, degree, length
     expected = np.zeros(count + degree + length)
     product = C.chebmul(factor, chebyshev.basis(degree)[int(slopes)] @ field)
     expected[: len(product)] = product
-    rows, columns, values = chebyshev.entries(factor, count, degree, slopes)
+    _, rows, columns, values = chebyshev.entries([factor], [slopes], count, degree)
     result = np.zeros(count)
     np.add.at(result, rows, values * field[columns])
     np.testing.assert_allclose(result, expected[:count], atol=1e-13)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from samples import dunes, reference, vortices
 
-from stability import NotResolved, dispersion, flows
+from stability import NotResolved, dispersion, flows, tracking
 from stability.flows import vortex
 from stability.layer import Layer
 from stability.mode import Solver
@@ -131,3 +131,28 @@ def test_the_fluid_as_a_layer_agrees_with_its_closed_form(depth):
     closed = dispersion(flows.Dune(depth=depth), k)
     layer = dispersion(flows.Dune(depth=depth, fluid="layer"), k)
     np.testing.assert_allclose(layer.sigma, closed.sigma, rtol=2e-14)
+
+
+@pytest.mark.parametrize(("flow", "low", "high"), [(flows.Vortex(), 0.5, 4.0), (flows.Dune(shields=3.0), 0.1, 5.0)])
+def test_points_that_share_a_factorisation_are_as_good_as_any(flow, low, high):
+    """Many wavenumbers between two steps of the walk: settled next to one another, and right within their bars."""
+    relation = dispersion(flow, np.geomspace(low, high, 150))
+    for mode in relation.modes[::15]:
+        assert abs(reference(flow, mode.k, mode.sigma) - mode.sigma) <= mode.error
+
+
+@pytest.mark.parametrize(("flow", "k"), [(flows.Vortex(), np.geomspace(0.5, 4.0, 150)),
+                                         (flows.Dune(), np.geomspace(0.05, 5.0, 200)),
+                                         (flows.Poiseuille(), np.linspace(0.8, 1.1, 100))])
+def test_points_that_share_a_factorisation_settle(flow, k, monkeypatch):
+    """No point of a smooth sweep has to be walked to on its own, after the two walks to and through the sweep."""
+    starts = []
+    initialise = tracking._Walk.__init__
+
+    def counted(self, *arguments):
+        starts.append(arguments)
+        initialise(self, *arguments)
+
+    monkeypatch.setattr(tracking._Walk, "__init__", counted)
+    dispersion(flow, k)
+    assert len(starts) <= 2
