@@ -23,7 +23,7 @@ from .errors import ModeLost
 _EPS = np.finfo(float).eps
 _TINY = np.finfo(float).tiny
 _FACTORISATIONS = 12
-_SWEEPS = 6  # of the shared iteration
+_SWEEPS = 8  # of the shared iteration
 _OFFSET = 1e-3  # of a shared factorisation from its rate: it must not be singular
 
 
