@@ -108,6 +108,24 @@ class Pencil:
         inside = np.arange(len(self.parts)) < self.first_b
         return np.where(inside.reshape(-1, *[1] * np.ndim(rate)), 1.0, rate)
 
+    def b(self, weights, x):
+        """Return B x, (size, points), for weights (parts, points) of the parts."""
+        return self.stack.total(self._carrying(weights), self.stack.times(x))
+
+    def b_left(self, weights, y):
+        """Return y^T B, (size, points)."""
+        return self.stack.total_left(self._carrying(weights), y)
+
+    def _carrying(self, weights):
+        """The weights of the parts as they add up to B: 0 for those that do not carry the rate."""
+        return np.concatenate([np.zeros_like(weights[: self.first_b]), -weights[self.first_b:]])
+
+    @cached_property
+    def rate_rows(self):
+        """The rows of B that are not empty."""
+        part, row, *_ = self._entries
+        return np.unique(row[part >= self.first_b])
+
     def factors(self, weights, rate):
         """Return LU factors of A - rate B for weights (parts,) of the parts."""
         return Factors(self._bordered, weights * self.powers(rate))

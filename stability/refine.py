@@ -59,14 +59,13 @@ def refine(pencil, weights, rate, x=None, y=None, bars=True):
     """
     x, y = (_start(pencil.size) if vector is None else vector[:, None] for vector in (x, y))
     y = y.conj()  # y^H from here on
-    stack, carrying = pencil.stack, _carrying(pencil, weights)
     for _ in range(_FACTORISATIONS):
         if pencil.real and not np.imag(rate):
             rate, x, y = np.real(rate), x.real, y.real
         factors = _factors(pencil, weights.value[:, 0], rate)
-        x, x_error = _iterate(lambda v, f=factors: f.solve(stack.total(carrying, stack.times(v))), x)
-        y, y_error = _iterate(lambda v, f=factors: f.solve_left(stack.total_left(carrying, v)), y)
-        rate = _rate(pencil, weights.value * stack.brackets(y, stack.times(x)))[0]
+        x, x_error = _iterate(lambda v, f=factors: f.solve(pencil.b(weights.value, v)), x)
+        y, y_error = _iterate(lambda v, f=factors: f.solve_left(pencil.b_left(weights.value, v)), y)
+        rate = _rate(pencil, weights.value * pencil.stack.brackets(y, pencil.stack.times(x)))[0]
         if not np.isfinite(rate):
             break
         settled = _settled(x_error, y_error)
@@ -119,11 +118,9 @@ class _Shared:
         middle = slice((group.start + group.stop) // 2, (group.start + group.stop) // 2 + 1)
         self.group = group
         self._factors = _factors(pencil, weights.value[:, 0], rate[middle][0] * (1 + _OFFSET))
-        carrying = _carrying(pencil, weights)
-        self._x = self._factors.solve(pencil.stack.total(carrying, pencil.stack.times(x[:, middle])))
-        self._y = self._factors.solve_left(pencil.stack.total_left(carrying, y[:, middle]))
-        self._bx = pencil.stack.total(carrying, pencil.stack.times(self._x))
-        self._by = pencil.stack.total_left(carrying, self._y)
+        self._x = self._factors.solve(pencil.b(weights.value, x[:, middle]))
+        self._y = self._factors.solve_left(pencil.b_left(weights.value, y[:, middle]))
+        self._bx, self._by = pencil.b(weights.value, self._x), pencil.b_left(weights.value, self._y)
         self._norm = (self._by * self._x).sum()
 
     def steps(self, right, left):
@@ -140,11 +137,6 @@ def _factors(pencil, weights, rate):
         except np.linalg.LinAlgError:  # the rate is an eigenvalue to the last bit
             rate = rate * (1 + 4 * _EPS) + _TINY
     raise ModeLost(f"the equations are singular near the rate {complex(rate):.6g}")
-
-
-def _carrying(pencil, weights):
-    """The weights of the parts as they add up to B: 0 for those that do not carry the rate."""
-    return np.concatenate([np.zeros_like(weights.value[: pencil.first_b]), -weights.value[pencil.first_b:]])
 
 
 def _iterate(step, vector):
@@ -200,7 +192,6 @@ def _quotient(pencil, weights, x, y, settled, bars):
     tail = np.abs(pencil.tail.total(weights.value * power, pencil.tail.times(x)))
     beyond = tail.reshape(len(pencil.last), -1, len(norm)).sum(axis=1)
     truncation = (beyond * np.abs(y[pencil.last]).max(axis=1)).sum(axis=0)
-    carrying = _carrying(pencil, weights)
-    bx, by = stack.total(carrying, products), stack.total_left(carrying, y)
-    return Eigen(rate, slope, truncation, _EPS * np.sqrt(variance), spread, *(
-        np.ascontiguousarray(vectors.T) for vectors in (x, y.conj(), bx, by)), settled)
+    vectors = x, y.conj(), pencil.b(weights.value, x), pencil.b_left(weights.value, y)
+    return Eigen(rate, slope, truncation, _EPS * np.sqrt(variance), spread,
+                 *(np.ascontiguousarray(rows.T) for rows in vectors), settled)

@@ -12,10 +12,10 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
+from scipy.linalg import qr
 
 from .errors import ModeLost
 from .mode import DEGREES, TOLERANCE, Solver, check_wavenumbers, require
-from .pencil import Weights
 from .threads import one_thread
 
 _SHIFT = 0.01 - 0.013j  # tried when the pencil is singular at rate 0
@@ -44,27 +44,35 @@ class Spectrum:
 
 def finite_rates(solver, degree, symbols):
     """Return the finite eigenvalues of the pencil of this degree, all of them, by decreasing real part."""
-    pencil = solver.pencil(degree)
-    theta, shift = _theta(pencil, pencil.weights(symbols))
-    rates = shift + 1 / theta[: _finite_count(solver, degree)]
+    pencil, count = solver.pencil(degree), _finite_count(solver, degree)
+    theta, shift = _theta(pencil, pencil.weights(symbols).value, count)
+    rates = shift + 1 / theta[:count]
     return rates[np.argsort(-rates.real)]
 
 
-def _theta(pencil, weights):
-    """Eigenvalues of G by decreasing size, and the shift."""
-    a, b = pencil.pair(weights)
-    rows = np.flatnonzero(np.any(b, axis=1))
-    columns = np.zeros((len(a), len(rows)))
+def _theta(pencil, weights, rank=None):
+    """Eigenvalues of G by decreasing size, and the shift; only `rank` of them if G is known to have that rank."""
+    rows = pencil.rate_rows
+    columns = np.zeros((pencil.size, len(rows)))
     columns[rows, np.arange(len(rows))] = 1
     for shift in (0.0, _SHIFT):
         try:
-            theta = np.linalg.eigvals(b[rows] @ np.linalg.solve(a - shift * b, columns))
+            response = pencil.factors(weights, shift).solve(columns)
         except np.linalg.LinAlgError:
             continue
+        theta = _eigenvalues(pencil.b(weights[:, None], response)[rows], rank)
         theta = theta[np.argsort(-np.abs(theta))]
         if np.abs(theta[0]) < _SINGULAR * np.abs(theta[1]):
             break
     return theta, shift
+
+
+def _eigenvalues(g, rank):
+    """Eigenvalues of g; the non-zero ones alone from g = q r, which has those of r q."""
+    if rank is None or rank >= len(g):
+        return np.linalg.eigvals(g)
+    q, r, order = qr(g, pivoting=True)
+    return np.linalg.eigvals(r[:rank] @ q[order, :rank])
 
 
 def _finite_count(solver, degree):
@@ -77,7 +85,7 @@ def _smallest_count(assembly):
     """Finite eigenvalues at the smallest degree: read off the gap in theta with all symbols 1."""
     small = assembly.pencil(_SMALL)
     ones = np.ones(len(small.parts))
-    sizes = np.abs(_theta(small, Weights(ones, ones, ones))[0])
+    sizes = np.abs(_theta(small, ones)[0])
     return int(np.argmin(sizes[1:] / np.maximum(sizes[:-1], np.finfo(float).tiny))) + 1
 
 
