@@ -58,11 +58,9 @@ class Pencil:
         kept = (table.column <= degree) & (table.row < reach[table.equation])
         entries = (table.part[kept], rows[table.equation[kept], table.row[kept]],
                    columns[table.unknown[kept], table.column[kept]], table.value[kept])
-        self._entries, (part, row, column, value) = (tuple(array[side] for array in entries) for side in
-                                                     (entries[1] < self.size, entries[1] >= self.size))
+        self._entries, self._beyond = (tuple(array[side] for array in entries) for side in
+                                       (entries[1] < self.size, entries[1] >= self.size))
         self.stack = Stack(*self._entries, len(self.parts), (self.size, self.size))
-        self.tail = Stack(part, row - self.size, column, value, len(self.parts),
-                          (TAIL * len(table.system.equations), self.size))
         self.real = np.isrealobj(table.value)
 
     def _place(self, table):
@@ -108,13 +106,18 @@ class Pencil:
         inside = np.arange(len(self.parts)) < self.first_b
         return np.where(inside.reshape(-1, *[1] * np.ndim(rate)), 1.0, rate)
 
+    @cached_property
+    def tail(self):
+        part, row, column, value = self._beyond
+        return Stack(part, row - self.size, column, value, len(self.parts), (TAIL * len(self.last), self.size))
+
     def b(self, weights, x):
         """Return B x, (size, points), for weights (parts, points) of the parts."""
-        return self.stack.total(self._carrying(weights), self.stack.times(x))
+        return self.stack.total(self.stack.spread(self._carrying(weights)), self.stack.times(x))
 
     def b_left(self, weights, y):
         """Return y^T B, (size, points)."""
-        return self.stack.total_left(self._carrying(weights), y)
+        return self.stack.total_left(self.stack.spread(self._carrying(weights)), y)
 
     def _carrying(self, weights):
         """The weights of the parts as they add up to B: 0 for those that do not carry the rate."""

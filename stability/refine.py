@@ -19,6 +19,7 @@ from functools import lru_cache
 import numpy as np
 
 from .errors import ModeLost
+from .stack import square
 
 _EPS = np.finfo(float).eps
 _TINY = np.finfo(float).tiny
@@ -91,11 +92,12 @@ def refine_many(pencil, weights, rate, x, y, groups, bars=True):
         rate, x, y = rate.real, x.real, y.real
     x, y = np.ascontiguousarray(x), np.ascontiguousarray(y)
     shared = [_Shared(pencil, weights.at([(group.start + group.stop) // 2]), rate, x, y, group) for group in groups]
-    x_change = y_change = np.zeros(len(rate))
+    stack, x_change, y_change = pencil.stack, np.zeros(len(rate)), np.zeros(len(rate))
     for _ in range(_SWEEPS):
-        products = pencil.stack.times(x)
-        total = weights.value * pencil.powers(_rate(pencil, weights.value * pencil.stack.brackets(y, products)))
-        right, left = pencil.stack.total(total, products), pencil.stack.total_left(total, y)
+        products = stack.times(x)
+        rate = _rate(pencil, weights.value * stack.brackets(y, products))
+        spread = stack.spread(weights.value * pencil.powers(rate))
+        right, left = stack.total(spread, products), stack.total_left(spread, y)
         dx, dy = (np.concatenate(parts, axis=1) for parts in
                   zip(*(one.steps(right[:, one.group], left[:, one.group]) for one in shared), strict=True))
         x, y = x - dx, y - dy
@@ -126,8 +128,7 @@ class _Shared:
     def steps(self, right, left):
         """Return M^{-1} right and left M^{-1} without their components along the eigenvectors of M."""
         dx, dy = self._factors.solve(right), self._factors.solve_left(left)
-        return (dx - self._x * ((self._by * dx).sum(axis=0) / self._norm),
-                dy - self._y * ((self._bx * dy).sum(axis=0) / self._norm))
+        return dx - self._x @ (self._by.T @ dx / self._norm), dy - self._y @ (self._bx.T @ dy / self._norm)
 
 
 def _factors(pencil, weights, rate):
@@ -165,7 +166,7 @@ def _settled(x_error, y_error):
 
 
 def _size(vectors):
-    return np.sqrt((np.abs(vectors) ** 2).sum(axis=0))
+    return np.sqrt(square(vectors).sum(axis=0))
 
 
 def _rate(pencil, value):
@@ -187,9 +188,9 @@ def _quotient(pencil, weights, x, y, settled, bars):
     spread = (weights.spread * np.abs(brackets * power)).sum(axis=0) / np.abs(norm)
     variance = np.zeros(len(norm))
     if bars:
-        variance += (np.abs(weights.value * power) ** 2 * stack.squares(y, x)).sum(axis=0)  # of matrix entries
-        variance += (np.abs(value * power) ** 2).sum(axis=0) / np.abs(norm) ** 2  # of the weights, common to a part
-    tail = np.abs(pencil.tail.total(weights.value * power, pencil.tail.times(x)))
+        variance += (square(weights.value * power) * stack.squares(y, x)).sum(axis=0)  # of matrix entries
+        variance += square(value * power).sum(axis=0) / square(norm)  # of the weights, common to a part
+    tail = np.abs(pencil.tail.total(pencil.tail.spread(weights.value * power), pencil.tail.times(x)))
     beyond = tail.reshape(len(pencil.last), -1, len(norm)).sum(axis=1)
     truncation = (beyond * np.abs(y[pencil.last]).max(axis=1)).sum(axis=0)
     vectors = x, y.conj(), pencil.b(weights.value, x), pencil.b_left(weights.value, y)

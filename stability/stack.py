@@ -3,6 +3,8 @@
 Vectors are the columns of arrays (size, points): one product serves all points, whatever their scalars.
 """
 
+from functools import cached_property
+
 import numpy as np
 from scipy.sparse import csc_array, csr_array
 
@@ -20,26 +22,46 @@ class Stack:
         key = key[order]
         first = np.flatnonzero(np.diff(key, prepend=-1))
         self.part, self.row = key[first] // shape[0], shape[0] - 1 - key[first] % shape[0]
-        count = len(first)
-        starts = np.append(first, len(key))
-        self._lines = csr_array((value[order], column[order], starts), (count, shape[1]))
-        self._lines_t = self._lines.T
-        self._squares = csr_array((np.abs(self._lines.data) ** 2, self._lines.indices, starts), (count, shape[1]))
-        ones, each = np.ones(count), np.arange(count + 1)
-        self._by_row = csc_array((ones, self.row, each), (shape[0], count))
-        self._by_part = csr_array((ones, each[:-1], np.searchsorted(self.part, np.arange(parts + 1))), (parts, count))
+        self._lines = csr_array((value[order], column[order], np.append(first, len(key))), (len(first), shape[1]))
+        self._shape = parts, shape[0]
+
+    @cached_property
+    def _lines_t(self):
+        return self._lines.T
+
+    @cached_property
+    def _squares(self):
+        lines = self._lines
+        return csr_array((square(lines.data), lines.indices, lines.indptr), lines.shape)
+
+    @cached_property
+    def _by_row(self):
+        """Matrix (rows, lines) that sums the lines of each row."""
+        count = len(self.row)
+        return csc_array((np.ones(count), self.row, np.arange(count + 1)), (self._shape[1], count))
+
+    @cached_property
+    def _by_part(self):
+        """Matrix (parts, lines) that sums the lines of each part."""
+        parts, count = self._shape[0], len(self.part)
+        starts = np.searchsorted(self.part, np.arange(parts + 1))
+        return csr_array((np.ones(count), np.arange(count), starts), (parts, count))
 
     def times(self, x):
         """Products of every part with x: (lines, points), for the methods below."""
         return self._lines @ x
 
-    def total(self, weights, products):
-        """Sum over the parts, weights (parts, points) times products with x: (rows, points)."""
-        return self._by_row @ (weights[self.part] * products)
+    def spread(self, weights):
+        """Weights (parts, points) of the lines: (lines, points), for the methods below."""
+        return weights[self.part]
 
-    def total_left(self, weights, y):
+    def total(self, spread, products):
+        """Sum over the parts, weights times products with x: (rows, points)."""
+        return self._by_row @ (spread * products)
+
+    def total_left(self, spread, y):
         """Sum over the parts, weights times y^T part: (columns, points)."""
-        return self._lines_t @ (weights[self.part] * y[self.row])
+        return self._lines_t @ (spread * y[self.row])
 
     def brackets(self, y, products):
         """y^T part x for every part: (parts, points)."""
@@ -47,4 +69,9 @@ class Stack:
 
     def squares(self, y, x):
         """Sum over the entries of each part of |y_i entry_ij x_j|^2: (parts, points)."""
-        return self._by_part @ (np.abs(y[self.row]) ** 2 * (self._squares @ np.abs(x) ** 2))
+        return self._by_part @ (square(y)[self.row] * (self._squares @ square(x)))
+
+
+def square(z):
+    """|z|^2, without the root that abs takes."""
+    return z.real**2 + z.imag**2 if np.iscomplexobj(z) else z**2

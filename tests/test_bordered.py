@@ -34,9 +34,9 @@ def test_products_from_either_side(matrices):
     full, entries = matrices
     stack = Stack(*entries, PARTS, (SIZE, SIZE))
     weights, x, y = columns(3, 8)[:PARTS], columns(3, 9), columns(3, 10)
-    products = stack.times(x)
-    np.testing.assert_allclose(stack.total(weights, products), np.einsum("pn,prc,cn->rn", weights, full, x), atol=1e-12)
-    np.testing.assert_allclose(stack.total_left(weights, y), np.einsum("pn,rn,prc->cn", weights, y, full), atol=1e-12)
+    products, spread = stack.times(x), stack.spread(weights)
+    np.testing.assert_allclose(stack.total(spread, products), np.einsum("pn,prc,cn->rn", weights, full, x), atol=1e-12)
+    np.testing.assert_allclose(stack.total_left(spread, y), np.einsum("pn,rn,prc->cn", weights, y, full), atol=1e-12)
     np.testing.assert_allclose(stack.brackets(y, products), np.einsum("rn,prc,cn->pn", y, full, x), atol=1e-12)
     squares = np.einsum("rn,prc,cn->pn", abs(y) ** 2, abs(full) ** 2, abs(x) ** 2)
     np.testing.assert_allclose(stack.squares(y, x), squares, rtol=1e-12)
@@ -45,7 +45,7 @@ def test_products_from_either_side(matrices):
 def test_rows_without_entries():
     stack = Stack(*(np.array(values) for values in ([1], [2], [0], [3.0])), 2, (4, 2))
     x = np.array([[2.0], [5.0]])
-    np.testing.assert_array_equal(stack.total(np.ones((2, 1)), stack.times(x)), [[0], [0], [6], [0]])
+    np.testing.assert_array_equal(stack.total(stack.spread(np.ones((2, 1))), stack.times(x)), [[0], [0], [6], [0]])
     np.testing.assert_array_equal(stack.brackets(np.ones((4, 1)), stack.times(x)), [[0], [6]])
 
 
