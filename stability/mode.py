@@ -17,7 +17,7 @@ DEGREES = (8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 128, 160, 
            384, 512)
 TOLERANCE = 1e-10  # default bound on error / |sigma| for a resolved mode
 
-_LEAST = 32  # degree of the smallest table of entries
+_LEAST = 64  # degree of the smallest table of entries
 _TOGETHER = 16  # groups refined at once: their vectors stay in the cache
 _EPS = np.finfo(float).eps
 _ROUNDING = 3.0  # standard deviations of the accumulated rounding that the error bar spans
@@ -29,8 +29,7 @@ class Mode:
 
     `sigma` complex growth rate, `error` bound of its absolute error, `slope` d sigma/dk, `truncation` and
     `rounding` the parts of the error, `degree` of the series, `status` "resolved" or what failed. `x`, `y`
-    (size,) hold the right and left eigenvector in the pencil of that degree, with y^H B x = 1; `bx` and
-    `by` are B x and y^H B.
+    (size,) hold the right and left eigenvector in the pencil of that degree, with y^H B x = 1.
     """
 
     flow: Any
@@ -46,8 +45,6 @@ class Mode:
     rate_slope: complex = field(repr=False)
     x: np.ndarray = field(repr=False)
     y: np.ndarray = field(repr=False)
-    bx: np.ndarray = field(repr=False)
-    by: np.ndarray = field(repr=False)
 
     @property
     def growth_rate(self):
@@ -94,7 +91,7 @@ class Assembly:
 class Solver:
     """Refines modes of one flow to a relative tolerance, within a largest degree.
 
-    The degree is raised until the truncation error is a tenth of the tolerance asked for, or below
+    The degree is raised until the truncation error is half the tolerance asked for, or below
     rounding; with the default tolerance until it is far below, since that costs little. Without `bars`
     errors are truncation alone.
     """
@@ -103,7 +100,7 @@ class Solver:
         self.flow = flow
         self.bars = bars
         self.tolerance = tolerance
-        self.truncation = 1e-5 * tolerance if tolerance == TOLERANCE else 0.1 * tolerance
+        self.truncation = 1e-5 * tolerance if tolerance == TOLERANCE else 0.5 * tolerance
         self.degrees = tuple(d for d in DEGREES if d <= max_degree) or (max_degree,)
         self.assembly = assembly or Assembly(flow)
         self.pencil = self.assembly.pencil
@@ -174,6 +171,13 @@ class Solver:
     def _fits(self, mode):
         return mode.truncation <= max(mode.rounding, self.truncation * abs(mode.sigma))
 
+    def overlap(self, old, mode):
+        """Product of the two biorthogonal overlaps of a new mode with an old one: near 1 for one mode, 0 for two."""
+        x, y = transfer(self, (old.degree, old.x, old.y), mode.degree)
+        weights = self.weights([mode.k], mode.degree).value
+        bx, b_old = self.pencil(mode.degree).b(weights, np.array([mode.x, x]).T).T
+        return np.vdot(y, bx) * np.vdot(mode.y, b_old)
+
     def next_degree(self, mode):
         """The degree to try first near this mode: one rung lower where it is over-resolved."""
         rung = self.degrees.index(mode.degree)
@@ -190,8 +194,7 @@ class Solver:
             status = f"error {error:.1e} exceeds tolerance at degree {degree}"
         slope = width * eigen.slope + (1 + self.flow.order) * sigma / k
         return Mode(self.flow, float(k), complex(sigma), float(error), complex(slope), degree, status,
-                    float(truncation), float(rounding), eigen.rate, eigen.slope, eigen.x, eigen.y,
-                    eigen.bx, eigen.by)
+                    float(truncation), float(rounding), eigen.rate, eigen.slope, eigen.x, eigen.y)
 
 
 def check_wavenumbers(k):

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from .errors import ModeLost, ParameterError
-from .mode import Solver, transfer
+from .mode import Solver
 from .sensitivity import parameter_slope
 from .spectra import finite_rates, leading_modes
 
@@ -101,10 +101,7 @@ class Plane:
             mode = solver.solve(k, (old.sigma + change) / solver.width(k), vectors, degree)
         except ModeLost:
             return None
-        _, y = transfer(solver, vectors, mode.degree)
-        _, y_back = transfer(solver, (mode.degree, mode.x, mode.y), old.degree)
-        overlap = np.vdot(y, mode.bx) * np.vdot(y_back, old.bx)  # 1 for one mode, 0 for two
-        return self._point(k, value, mode) if abs(overlap - 1) < _OVERLAP else None
+        return self._point(k, value, mode) if abs(solver.overlap(old, mode) - 1) < _OVERLAP else None
 
     def _point(self, k, value, mode):
         return Point(k, value, mode, complex(parameter_slope(self.solver(value), mode, self.vary)))

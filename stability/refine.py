@@ -33,8 +33,8 @@ class Eigen:
     """Eigenvalues of a pencil at several points: arrays (points,), vectors (points, size).
 
     `rate` with its `slope` in k; `truncation`, the standard deviation `rounding` and the `spread` from
-    uncertain symbols, all in units of the rate; `x`, `y` right and left vectors with y^H B x = 1, and
-    `bx` = B x, `by` = y^H B; `settled` tells where the quotient is converged to rounding.
+    uncertain symbols, all in units of the rate; `x`, `y` right and left vectors with y^H B x = 1; `settled`
+    tells where the quotient is converged to rounding.
     """
 
     rate: np.ndarray
@@ -44,8 +44,6 @@ class Eigen:
     spread: np.ndarray
     x: np.ndarray
     y: np.ndarray
-    bx: np.ndarray
-    by: np.ndarray
     settled: np.ndarray
 
     def at(self, index):
@@ -91,15 +89,18 @@ def refine_many(pencil, weights, rate, x, y, groups, bars=True):
     if pencil.real and not np.any(np.imag(rate)):
         rate, x, y = rate.real, x.real, y.real
     x, y = np.ascontiguousarray(x), np.ascontiguousarray(y)
-    shared = [_Shared(pencil, weights.at([(group.start + group.stop) // 2]), rate, x, y, group) for group in groups]
+    middles = [(group.start + group.stop) // 2 for group in groups]
+    factors = [_factors(pencil, weights.value[:, i], rate[i] * (1 + _OFFSET)) for i in middles]
+    project = _Projection(pencil, weights.value[:, middles], x[:, middles], y[:, middles], groups)
     stack, x_change, y_change = pencil.stack, np.zeros(len(rate)), np.zeros(len(rate))
     for _ in range(_SWEEPS):
         products = stack.times(x)
         rate = _rate(pencil, weights.value * stack.brackets(y, products))
         spread = stack.spread(weights.value * pencil.powers(rate))
         right, left = stack.total(spread, products), stack.total_left(spread, y)
-        dx, dy = (np.concatenate(parts, axis=1) for parts in
-                  zip(*(one.steps(right[:, one.group], left[:, one.group]) for one in shared), strict=True))
+        solved = [(f.solve(right[:, group]), f.solve_left(left[:, group]))
+                  for f, group in zip(factors, groups, strict=True)]
+        dx, dy = project(*(np.concatenate(parts, axis=1) for parts in zip(*solved, strict=True)))
         x, y = x - dx, y - dy
         x_change, x_error = _converging(dx, x, x_change)
         y_change, y_error = _converging(dy, y, y_change)
@@ -109,26 +110,23 @@ def refine_many(pencil, weights, rate, x, y, groups, bars=True):
     return _quotient(pencil, weights, x, y, settled, bars)
 
 
-class _Shared:
-    """The factorisation M of the middle of a group of points, with its eigenvectors.
+class _Projection:
+    """Takes out of steps what lies along the eigenvectors x, y (size, groups) of the middles of groups.
 
-    M is nearly singular: a step would be mostly along them. That component is the scale of the vectors, and is
-    taken out.
+    The shared factorisations are nearly singular, and a step with them is mostly that: a change of scale.
     """
 
-    def __init__(self, pencil, weights, rate, x, y, group):
-        middle = slice((group.start + group.stop) // 2, (group.start + group.stop) // 2 + 1)
-        self.group = group
-        self._factors = _factors(pencil, weights.value[:, 0], rate[middle][0] * (1 + _OFFSET))
-        self._x = self._factors.solve(pencil.b(weights.value, x[:, middle]))
-        self._y = self._factors.solve_left(pencil.b_left(weights.value, y[:, middle]))
-        self._bx, self._by = pencil.b(weights.value, self._x), pencil.b_left(weights.value, self._y)
-        self._norm = (self._by * self._x).sum()
+    def __init__(self, pencil, weights, x, y, groups):
+        bx, by = pencil.b(weights, x), pencil.b_left(weights, y)
+        norm = (by * x).sum(axis=0)
+        self._own = np.repeat(np.arange(len(groups)), [group.stop - group.start for group in groups])
+        self._x, self._y = x / norm, y / norm
+        self._bx, self._by = bx, by
 
-    def steps(self, right, left):
-        """Return M^{-1} right and left M^{-1} without their components along the eigenvectors of M."""
-        dx, dy = self._factors.solve(right), self._factors.solve_left(left)
-        return dx - self._x @ (self._by.T @ dx / self._norm), dy - self._y @ (self._bx.T @ dy / self._norm)
+    def __call__(self, dx, dy):
+        own = self._own
+        along_x, along_y = (self._by[:, own] * dx).sum(axis=0), (self._bx[:, own] * dy).sum(axis=0)
+        return dx - self._x[:, own] * along_x, dy - self._y[:, own] * along_y
 
 
 def _factors(pencil, weights, rate):
@@ -193,6 +191,5 @@ def _quotient(pencil, weights, x, y, settled, bars):
     tail = np.abs(pencil.tail.total(pencil.tail.spread(weights.value * power), pencil.tail.times(x)))
     beyond = tail.reshape(len(pencil.last), -1, len(norm)).sum(axis=1)
     truncation = (beyond * np.abs(y[pencil.last]).max(axis=1)).sum(axis=0)
-    vectors = x, y.conj(), pencil.b(weights.value, x), pencil.b_left(weights.value, y)
-    return Eigen(rate, slope, truncation, _EPS * np.sqrt(variance), spread,
-                 *(np.ascontiguousarray(rows.T) for rows in vectors), settled)
+    vectors = (np.ascontiguousarray(rows.T) for rows in (x, y.conj()))
+    return Eigen(rate, slope, truncation, _EPS * np.sqrt(variance), spread, *vectors, settled)

@@ -7,7 +7,7 @@ continuity, become semisimple zeros of G. How many are finite follows from the s
 nothing is filtered by size.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any
 
@@ -77,15 +77,23 @@ def _eigenvalues(g, rank):
 
 def _finite_count(solver, degree):
     """How many eigenvalues are finite: one per degree for every layer that carries the rate, plus a constant."""
-    return _smallest_count(solver.assembly) + (degree - _SMALL) * solver.assembly.system.dynamic_layers
+    system = solver.assembly.system
+    return _smallest_count(_Structure(system.pattern, solver.assembly)) + (degree - _SMALL) * system.dynamic_layers
 
 
-@lru_cache(maxsize=8)
-def _smallest_count(assembly):
+@dataclass(frozen=True)
+class _Structure:
+    """What the number of finite eigenvalues depends on, and an assembly that has it."""
+
+    pattern: tuple
+    assembly: Any = field(compare=False)
+
+
+@lru_cache(maxsize=32)
+def _smallest_count(structure):
     """Finite eigenvalues at the smallest degree: read off the gap in theta with all symbols 1."""
-    small = assembly.pencil(_SMALL)
-    ones = np.ones(len(small.parts))
-    sizes = np.abs(_theta(small, ones)[0])
+    small = structure.assembly.pencil(_SMALL)
+    sizes = np.abs(_theta(small, np.ones(len(small.parts)))[0])
     return int(np.argmin(sizes[1:] / np.maximum(sizes[:-1], np.finfo(float).tiny))) + 1
 
 

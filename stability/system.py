@@ -42,6 +42,12 @@ class System:
         self.dynamic_layers = sum(not layer.steady for layer in layers)
         _check_count(flow, layers, len(self.conditions))
 
+    @property
+    def pattern(self):
+        """Which unknowns and monomials meet in each equation and condition, whatever their coefficients: hashable."""
+        rows = *((equation.extra, equation.terms) for equation in self.equations), *((0, t) for t in self.conditions)
+        return tuple((extra, tuple(term[:2] for term in terms)) for extra, terms in rows)
+
     def __eq__(self, other):
         return _same(self.equations, other.equations) and _same(self.conditions, other.conditions)
 

@@ -236,7 +236,8 @@ class _Walk:
         rate, vectors = self._predict(k)
         try:
             mode = self.solver.solve(k, rate, vectors, self.solver.next_degree(self.now))
-            deviation = abs(self._overlap(mode) - 1) if self._same_kind(mode) and self._smooth(mode) else np.inf
+            fits = self._same_kind(mode) and self._smooth(mode)
+            deviation = abs(self.solver.overlap(self.now, mode) - 1) if fits else np.inf
         except ModeLost:
             deviation = np.inf
         if deviation < _OVERLAP:
@@ -285,11 +286,6 @@ class _Walk:
         rate = now.rate + t * (slope + t * (bend + twist * (t + h)))
         x, y = transfer(self.solver, (before.degree, before.x, before.y), now.degree)
         return rate, (now.degree, _extrapolate(now.x, x, t / h), _extrapolate(now.y, y, t / h))
-
-    def _overlap(self, mode):
-        """Product of the two biorthogonal overlaps of `mode` with the last one; 1 for the same vectors."""
-        x, y = transfer(self.solver, (self.now.degree, self.now.x, self.now.y), mode.degree)
-        return np.vdot(y, mode.bx) * (mode.by @ x)
 
     def _cross(self, k):
         """Step across a collision of two real modes (or of a conjugate pair) just ahead; True if there is one.
