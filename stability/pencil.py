@@ -111,17 +111,19 @@ class Pencil:
         part, row, column, value = self._beyond
         return Stack(part, row - self.size, column, value, len(self.parts), (TAIL * len(self.last), self.size))
 
+    @cached_property
+    def _b(self):
+        carries = self._entries[0] >= self.first_b
+        part, row, column, value = (array[carries] for array in self._entries)
+        return Stack(part, row, column, -value, len(self.parts), (self.size, self.size))
+
     def b(self, weights, x):
         """Return B x, (size, points), for weights (parts, points) of the parts."""
-        return self.stack.total(self.stack.spread(self._carrying(weights)), self.stack.times(x))
+        return self._b.total(self._b.spread(weights), self._b.times(x))
 
     def b_left(self, weights, y):
         """Return y^T B, (size, points)."""
-        return self.stack.total_left(self.stack.spread(self._carrying(weights)), y)
-
-    def _carrying(self, weights):
-        """The weights of the parts as they add up to B: 0 for those that do not carry the rate."""
-        return np.concatenate([np.zeros_like(weights[: self.first_b]), -weights[self.first_b:]])
+        return self._b.total_left(self._b.spread(weights), y)
 
     @cached_property
     def rate_rows(self):

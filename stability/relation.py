@@ -119,6 +119,7 @@ def _leading(solver, wavenumbers):
         rivals = [(polished(half, k, 1, *found)[0], half) for half, found in zip(halves, dense, strict=True)
                   if found[0][0].real > best - _CLOSE * abs(found[0][0])]
         first, solver = max(rivals, key=lambda rival: rival[0].growth_rate)
+        solver.prepare(wavenumbers)
         return _followed(solver, wavenumbers, first)
     except ModeLost as reason:
         return {}, dict.fromkeys(wavenumbers.tolist(), str(reason)), ()
