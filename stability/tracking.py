@@ -26,7 +26,7 @@ _STEPS = 2000
 _GRID = 0.05  # spacing in log k of the wavenumbers that a survey lands on
 _FEW = 3  # wavenumbers that are walked to one by one
 _MANY = 8  # wavenumbers between two nodes that are refined one by one
-_ANCHORS = 2  # of more than these, so many become nodes first
+_ANCHORS = 3  # of more than these, so many become nodes first
 _DRIFT = 0.05  # largest relative difference of a refined rate from its interpolation
 _AGREEMENT = 0.03  # of the surface mode with its long-wave limit, in value and in slope
 
