@@ -6,14 +6,14 @@
 '-0.45293027'
 """
 
+__version__ = "0.1.0"
+
 from . import flows
 from .errors import ModeLost, NotResolved, ParameterError, StabilityError
 from .mode import Mode
 from .optimum import Optimum, k_max
 from .relation import DispersionRelation, dispersion
 from .spectra import Spectrum, spectrum
-
-__version__ = "0.1.0"
 
 __all__ = [
     "DispersionRelation",

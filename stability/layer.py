@@ -25,7 +25,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from numpy.polynomial import chebyshev as C
+
+from . import chebyshev
+
 FIELDS = ("v", "w", "t", "n")
+
+_SAMPLES = 64  # points that carry the slope of the map
 
 
 @dataclass(frozen=True)
@@ -61,6 +68,13 @@ class Layer:
     profile: Callable[..., Profile]
     singular: int = 0
     steady: bool = False
+
+    def height(self, s: np.ndarray) -> np.ndarray:
+        """Distance of the points 0 <= s <= 1 from the lower edge: the integral of dz/ds."""
+        points = chebyshev.points(_SAMPLES)
+        slope = np.broadcast_to(np.asarray(self.profile(points).dz, dtype=float), points.shape)
+        integral = C.chebint(chebyshev.coefficients(slope), lbnd=-1) / 2
+        return C.chebval(2 * s - 1, integral)
 
 
 def residuals(base, k, rate, fields, slopes, order):

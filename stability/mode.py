@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,12 @@ from .pencil import Pencil
 from .refine import refine, refine_many
 from .system import System
 from .table import Table
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from numpy.typing import ArrayLike
+
+    from .eigenfunction import Fields
 
 DEGREES = (8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 128, 160, 192, 256, 320,
            384, 512)
@@ -47,17 +53,41 @@ class Mode:
     y: np.ndarray = field(repr=False)
 
     @property
-    def growth_rate(self):
+    def growth_rate(self) -> float:
         return self.sigma.real
 
     @property
-    def c(self):
+    def c(self) -> complex:
         """Complex wave speed i sigma / k."""
         return 1j * self.sigma / self.k
 
     @property
-    def phase_speed(self):
+    def phase_speed(self) -> float:
         return self.c.real + 0.0  # no negative zero
+
+    def fields(self, z: "ArrayLike") -> "Fields":
+        """Return velocities, stresses and pressure of the eigenfunction at heights z, as `eigenfunction.Fields`.
+
+        Raises ParameterError where z lies outside the layers of the flow.
+        """
+        from .eigenfunction import Eigenfunction
+
+        return Eigenfunction(self).at(z)
+
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw |u| and |w| against z into the matplotlib Axes `ax`, or a new one; return it."""
+        from . import plots
+
+        return plots.mode(self, plots.axes_or_new(ax))
+
+    def sensitivity(self) -> dict[str, complex | None]:
+        """Return d sigma / d parameter of every numeric parameter, and "k", at the others fixed, from the left vector.
+
+        None where there is no derivative: at an infinite value. `sensitivity.sensitivities` adds error bars.
+        """
+        from .sensitivity import sensitivities
+
+        return {one.parameter: one.slope for one in sensitivities(self).slopes}
 
 
 class Assembly:

@@ -7,18 +7,27 @@ real part of d rate / dk at k = 0, where the scaled equations are regular. `neut
 growth = 0 through the plane of k and the parameter by arclength, past its turning points.
 """
 
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, fields, replace
 from math import exp, log
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from .errors import ModeLost, NotResolved, ParameterError
 from .mode import DEGREES, TOLERANCE, check_wavenumbers
+from .output import Row
 from .plane import Plane
+from .record import Record
 from .threads import one_thread
 from .tracking import surface_mode
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from numpy.typing import ArrayLike
+
+    from .flows import Flow
 
 _ROUGH = 1e-5  # tolerance of the first Newton steps and of the arclength continuation
 _LONG = 1e-9  # wavenumber that stands for 0
@@ -55,19 +64,41 @@ class NeutralPoint:
     k_error: float | None
     status: str
 
+    def row(self) -> Row:
+        return {"k": self.k, self.vary: self.value, "phase_speed": self.phase_speed, "error": self.error,
+                "status": self.status}
 
-@dataclass(frozen=True)
-class NeutralCurve:
+
+@dataclass(frozen=True, repr=False)
+class NeutralCurve(Record):
     """Neutral points at the wavenumbers asked for, by increasing value at each, and the `trace` (points, 2)
     of (k, value) along the whole curve from one end to the other."""
 
     flow: Any
     vary: str
-    points: tuple
-    trace: np.ndarray = field(repr=False)
+    points: tuple[NeutralPoint, ...]
+    trace: np.ndarray
+    dimension: ClassVar[str] = "point"
+
+    @property
+    def bounded(self) -> str:
+        return self.vary
+
+    def plot(self, ax: "Axes | None" = None, quantity: str = "value") -> "Axes":
+        """Draw value or phase_speed against k into the matplotlib Axes `ax`, or a new one; return it."""
+        from . import plots
+
+        return plots.neutral_curve(self, plots.axes_or_new(ax), quantity)
+
+    def rows(self) -> list[Row]:
+        return [point.row() for point in self.points]
+
+    def about(self) -> dict[str, Any]:
+        return {"vary": self.vary}
 
 
-def critical(flow, vary, *, long_wave=False, tolerance=TOLERANCE, max_degree=DEGREES[-1], strict=True):
+def critical(flow: "Flow", vary: str, *, long_wave: bool = False, tolerance: float = TOLERANCE,
+             max_degree: int = DEGREES[-1], strict: bool = True) -> NeutralPoint:
     """Return the `NeutralPoint` at which the largest growth rate over k is zero as `vary` varies.
 
     The search starts from the value that the flow has. `long_wave` asks for the threshold as k -> 0, even
@@ -85,7 +116,8 @@ def critical(flow, vary, *, long_wave=False, tolerance=TOLERANCE, max_degree=DEG
     return point
 
 
-def critical_sweep(flows, vary, *, long_wave=False, tolerance=TOLERANCE, max_degree=DEGREES[-1]):
+def critical_sweep(flows: "Iterable[Flow]", vary: str, *, long_wave: bool = False, tolerance: float = TOLERANCE,
+                   max_degree: int = DEGREES[-1]) -> Iterator[NeutralPoint]:
     """Yield `critical` of each flow in turn, starting from the value found last; what failed is in its status."""
     last = None
     for flow in flows:
@@ -98,7 +130,7 @@ def critical_sweep(flows, vary, *, long_wave=False, tolerance=TOLERANCE, max_deg
         yield point
 
 
-def check_parameter_name(flow, name):
+def check_parameter_name(flow: "Flow", name: str) -> str:
     """Return `name` if it is a numeric parameter of the flow, else raise a ParameterError."""
     known = [item.name for item in fields(flow) if "options" not in item.metadata]
     if name not in known:
@@ -225,7 +257,8 @@ def _long_wave_growth(plane, value):
 
 
 @one_thread
-def neutral_curve(flow, vary, k, *, tolerance=TOLERANCE, max_degree=DEGREES[-1]):
+def neutral_curve(flow: "Flow", vary: str, k: "ArrayLike", *, tolerance: float = TOLERANCE,
+                  max_degree: int = DEGREES[-1]) -> NeutralCurve:
     """Return the `NeutralCurve` through the critical point: at each wavenumber of k, all its values of `vary`.
 
     A wavenumber that the curve does not reach keeps one point without numbers, whose status says so.

@@ -5,16 +5,24 @@ analytic slope in steps that its predictor can vouch for; a maximum lies whereve
 positive to negative. Every one found is refined, because the largest can change branch.
 """
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from math import exp, log
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from .errors import ModeLost, NotResolved
 from .mode import DEGREES, TOLERANCE, Assembly, Solver
+from .output import Row
+from .record import Record
 from .threads import one_thread
 from .tracking import follow, surface_mode, survey
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .flows import Flow
 
 SEARCH = (1e-2, 100.0)  # default range of k; the lower end moves down until growth is a power law
 _ROUGH = 1e-4  # tolerance of the global look: small systems find the brackets
@@ -34,12 +42,12 @@ class Maximum:
     mode: Any
 
     @property
-    def growth_rate(self):
+    def growth_rate(self) -> float:
         return self.mode.growth_rate
 
 
-@dataclass(frozen=True)
-class Optimum:
+@dataclass(frozen=True, repr=False)
+class Optimum(Record):
     """All local maxima of the growth rate of the surface mode, by decreasing growth rate.
 
     `status` is "resolved" or says why there is none; `k_max`, `growth_rate`, `phase_speed` and
@@ -47,33 +55,104 @@ class Optimum:
     """
 
     flow: Any
-    maxima: tuple
+    maxima: tuple[Maximum, ...]
     status: str
+    dimension: ClassVar[str] = "flow"
+    bounded: ClassVar[str] = "k_max"
 
     @property
-    def best(self):
+    def best(self) -> Maximum:
         if not self.maxima:
             raise NotResolved(f"{self.flow}: {self.status}")
         return self.maxima[0]
 
     @property
-    def k_max(self):
+    def k_max(self) -> float:
         return self.best.k
 
     @property
-    def error(self):
+    def error(self) -> float:
         return self.best.error
 
     @property
-    def growth_rate(self):
+    def growth_rate(self) -> float:
         return self.best.growth_rate
 
     @property
-    def phase_speed(self):
+    def phase_speed(self) -> float:
         return self.best.mode.phase_speed
 
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Mark the maxima at (k, growth rate) in the matplotlib Axes `ax`, or in a new one; return it."""
+        from . import plots
 
-def k_max(flow, search=SEARCH, *, tolerance=TOLERANCE, max_degree=DEGREES[-1], strict=True):
+        return plots.maxima(self, plots.axes_or_new(ax))
+
+    def rows(self) -> list[Row]:
+        numbers = {name: getattr(self, name) if self.maxima else None
+                   for name in ("k_max", "growth_rate", "phase_speed", "error")}
+        return [{**numbers, "maxima": [[one.k, one.growth_rate] for one in self.maxima], "status": self.status}]
+
+    def columns(self) -> dict[str, np.ndarray]:
+        return Optima(self.flow, None, (self,)).columns()
+
+
+@dataclass(frozen=True, repr=False)
+class Optima(Record):
+    """The `Optimum` of every flow of a sweep over the parameter `over` of `flow`; a single one if `over` is None.
+
+    >>> from dataclasses import replace
+    >>> from stability import flows
+    >>> bed = flows.Dune()
+    >>> found = Optima(bed, "Re", tuple(k_max_sweep(replace(bed, Re=Re) for Re in (1.0, 10.0))))
+    >>> [f"{optimum.k_max:.6f}" for optimum in found.optima]
+    ['0.355087', '0.849202']
+    """
+
+    flow: Any
+    over: str | None
+    optima: tuple[Optimum, ...]
+    method: str = "collocation"
+    bounded: ClassVar[str] = "k_max"
+
+    @property
+    def dimension(self) -> str:
+        return self.over or "flow"
+
+    def plot(self, ax: "Axes | None" = None, quantity: str = "k_max") -> "Axes":
+        """Draw k_max or growth_rate against the swept parameter into the matplotlib Axes `ax`, or a new one; return it.
+
+        Local maxima that are not the largest are drawn too.
+        """
+        from . import plots
+
+        return plots.optima(self, plots.axes_or_new(ax), quantity)
+
+    def rows(self) -> list[Row]:
+        return [{**self._swept(optimum), **row} for optimum in self.optima for row in optimum.rows()]
+
+    def columns(self) -> dict[str, np.ndarray]:
+        """Return the columns of the rows, sigma at k_max, and all maxima as arrays (optima, maximum) if there is one."""
+        most = max(len(optimum.maxima) for optimum in self.optima)
+        maxima = np.full((2, len(self.optima), most), np.nan)
+        sigma = np.full(len(self.optima), complex(np.nan, np.nan))
+        for index, optimum in enumerate(self.optima):
+            for rank, one in enumerate(optimum.maxima):
+                maxima[:, index, rank] = one.k, one.growth_rate
+            if optimum.maxima:
+                sigma[index] = optimum.best.mode.sigma
+        columns = {**super().columns(), "sigma": sigma}
+        return {**columns, "maxima_k": maxima[0], "maxima_growth_rate": maxima[1]} if most else columns
+
+    def about(self) -> dict[str, Any]:
+        return {"over": self.over} if self.over else {}
+
+    def _swept(self, optimum: Optimum) -> Row:
+        return {self.over: getattr(optimum.flow, self.over)} if self.over else {}
+
+
+def k_max(flow: "Flow", search: tuple[float, float] = SEARCH, *, tolerance: float = TOLERANCE,
+          max_degree: int = DEGREES[-1], strict: bool = True) -> Optimum:
     """Return the `Optimum` of a flow: where the growth rate of its surface mode is largest.
 
     Only maxima with positive growth rate count: a flow that decays everywhere has none. Raises
@@ -85,7 +164,8 @@ def k_max(flow, search=SEARCH, *, tolerance=TOLERANCE, max_degree=DEGREES[-1], s
     return optimum
 
 
-def k_max_sweep(flows, search=SEARCH, *, tolerance=TOLERANCE, max_degree=DEGREES[-1]):
+def k_max_sweep(flows: "Iterable[Flow]", search: tuple[float, float] = SEARCH, *, tolerance: float = TOLERANCE,
+                max_degree: int = DEGREES[-1]) -> Iterator[Optimum]:
     """Yield the `Optimum` of each flow in turn; what failed is in its status.
 
     Flows with the same equations share their matrices (dunes at different Re, say).

@@ -6,23 +6,36 @@ import json
 import os
 import sys
 import tempfile
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import fields
 from math import isinf
 from pathlib import Path
+from typing import Any
 
+from . import __version__
 from .errors import ParameterError
 
+Row = dict[str, Any]
 
-def render(form, header, rows):
+
+def header_of(flow: Any, method: str, notes: Sequence[str] = ()) -> dict[str, Any]:
+    """What belongs to a whole result: flow, parameters, method, version, and notes if there are any."""
+    header = {"flow": flow.name, "parameters": {item.name: getattr(flow, item.name) for item in fields(flow)},
+              "method": method, "version": __version__}
+    return {**header, "notes": list(notes)} if notes else header
+
+
+def render(form: str, header: dict[str, Any], rows: list[Row]) -> str:
     """Return rows (dicts with the same keys) as text in the form "table", "csv" or "json".
 
-    `header` holds flow, parameters, method, version and whatever else belongs to the whole result.
+    `header` is that of `header_of`, and whatever else belongs to the whole result.
     """
     if form == "json":
         return json.dumps(_plain({**header, "rows": rows}), indent=1, allow_nan=False) + "\n"
     if form == "csv":
         return _csv(header, rows)
-    return _table(rows)
+    return table(rows)
 
 
 def _plain(value):
@@ -48,7 +61,8 @@ def _csv(header, rows):
     return text.getvalue()
 
 
-def _table(rows):
+def table(rows: list[Row]) -> str:
+    """Return rows as a table with aligned columns; at least one row."""
     cells = [[_cell(key, value) for key, value in row.items()] for row in rows]
     columns = list(zip(list(rows[0]), *cells, strict=True))
     widths = [max(len(cell) for cell in column) for column in columns]
@@ -69,7 +83,7 @@ def _cell(key, value):
 
 
 @contextmanager
-def whole_file(path, name):
+def whole_file(path: str | os.PathLike[str], name: str) -> Iterator[Path]:
     """Yield a temporary path beside `path` that replaces it when the block ends well.
 
     Raises ParameterError, naming the option `name`, where the file cannot be written.
@@ -98,7 +112,7 @@ def _umask():
     return mask
 
 
-def write(text, temporary):
+def write(text: str, temporary: Path | None) -> None:
     """Write text to the temporary file of -o, or to standard output."""
     if temporary is None:
         sys.stdout.write(text)

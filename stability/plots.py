@@ -1,10 +1,21 @@
 """Figures of results, drawn without a display and ready for print."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from .neutral import NeutralCurve, NeutralPoint
+from .eigenfunction import Eigenfunction
+from .errors import ParameterError
+from .mode import Mode
+from .neutral import NeutralCurve
+from .optimum import Optima, Optimum
 from .relation import DispersionRelation
+from .sensitivity import Sensitivities
+from .spectra import Spectrum
 from .wellposed import WellPosedness
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 STYLE = {
     "figure.constrained_layout.use": True,
@@ -18,10 +29,14 @@ STYLE = {
 }
 BLUE, RED, GREY = "#0b4f8a", "#c0392b", "#7f7f7f"
 
+DISPERSION = {"growth_rate": r"growth rate $\sigma_r$", "phase_speed": r"phase speed $c_r$"}  # axis labels
+OPTIMA = {"k_max": "$k_{max}$", "growth_rate": r"growth rate at $k_{max}$"}
+NEUTRAL = {"value": "at zero growth", "phase_speed": "phase speed $c_r$"}
+
 
 def draw(result, path):
-    """Draw a result into the file `path`: a DispersionRelation, a list of Spectrum, a NeutralCurve, or a pair
-    (name of the swept parameter, list of Optimum or NeutralPoint)."""
+    """Draw a result into the file `path`: a DispersionRelation, a list of Spectrum, Optima, a NeutralCurve,
+    Sensitivities, or a pair (name of the swept parameter, list of NeutralPoint)."""
     import matplotlib
     from matplotlib.figure import Figure
 
@@ -29,28 +44,48 @@ def draw(result, path):
         figure = Figure(figsize=(6.4, 2.8), layout="none" if _plain(result) else "constrained")
         if _plain(result):
             figure.subplots_adjust(left=0.14, right=0.98, bottom=0.18, top=0.86, wspace=0.45)
-        axes = figure.subplots(1, 2)
+        if isinstance(result, (list, Sensitivities)) or hasattr(result, "measurements"):
+            axis = figure.subplots()
+        else:
+            axes = figure.subplots(1, 2)
         if isinstance(result, DispersionRelation):
-            _dispersion(result, *axes)
+            _both(dispersion, result, axes, DISPERSION)
         elif isinstance(result, NeutralCurve):
-            _neutral_curve(result, *axes)
+            _both(neutral_curve, result, axes, NEUTRAL)
         elif isinstance(result, list):
-            _spectra(result, figure, axes)
+            spectra(result, axis)
+        elif isinstance(result, Sensitivities):
+            sensitivities(result, axis)
         elif hasattr(result, "measurements"):
-            _comparison(result, figure, axes)
+            _comparison(result, axis)
+        elif isinstance(result, Optima):
+            _both(optima, result, axes, OPTIMA)
         elif isinstance(result[0], WellPosedness):
             _well_posedness(*result, *axes)
-        elif isinstance(result[1][0], NeutralPoint):
-            _neutral_points(*result, *axes)
         else:
-            _optima(*result, *axes)
+            _neutral_points(*result, *axes)
         figure.suptitle(_caption(result), fontsize=8, color=GREY)
         figure.savefig(path)
 
 
+def axes_or_new(axes: "Axes | None") -> "Axes":
+    """Return the axes given, or those of a new figure of pyplot."""
+    if axes is not None:
+        return axes
+    from matplotlib import pyplot
+
+    with pyplot.rc_context(STYLE):
+        return pyplot.subplots(figsize=(4.2, 3.0))[1]
+
+
+def _both(panel, result, axes, quantities):
+    for axis, quantity in zip(axes, quantities, strict=True):
+        panel(result, axis, quantity)
+
+
 def _plain(result):
     """Two plain panels need no layout engine, which would take half the time of the drawing."""
-    return isinstance(result, DispersionRelation) or isinstance(result, tuple) and hasattr(result[1][0], "maxima")
+    return isinstance(result, (DispersionRelation, Optima))
 
 
 def _caption(result):
@@ -58,51 +93,87 @@ def _caption(result):
         return f"{result.flow}, {result.mode} mode"
     if isinstance(result, NeutralCurve):
         return str(result.flow)
-    if hasattr(result, "measurements"):
+    if isinstance(result, Sensitivities) or hasattr(result, "measurements"):
         return f"{result.flow}, k = {result.k:g}"
-    if isinstance(result, list) or isinstance(result[0], WellPosedness):
+    if isinstance(result, list) or isinstance(result, tuple) and isinstance(result[0], WellPosedness):
         return str(result[0].flow)
-    name, points = result
-    first = points[0].flow
+    name, first = (result.over, result.flow) if isinstance(result, Optima) else (result[0], result[1][0].flow)
     return str(first).replace(f"{name}={getattr(first, name)}", f"{name} swept") if name else str(first)
 
 
-def _dispersion(relation, left, right):
+def _label(labels, quantity):
+    if quantity not in labels:
+        raise ParameterError(f"quantity must be one of {', '.join(labels)} (got {quantity!r})")
+    return labels[quantity]
+
+
+def dispersion(relation: DispersionRelation, axis: "Axes", quantity: str) -> "Axes":
+    """Growth rate or phase speed against k."""
+    label = _label(DISPERSION, quantity)
     order = np.argsort(relation.k)
     k = relation.k[order]
-    marker = "o" if len(k) == 1 else ""
-    for axis, values, label in ((left, relation.growth_rate, r"growth rate $\sigma_r$"),
-                                (right, relation.phase_speed, r"phase speed $c_r$")):
-        axis.axhline(0, color=GREY, linewidth=0.6)
-        axis.plot(k, values[order], color=BLUE, marker=marker)
-        axis.set(xlabel="wavenumber $k$", ylabel=label, xscale="log" if _spans_decades(k) else "linear")
+    axis.axhline(0, color=GREY, linewidth=0.6)
+    axis.plot(k, getattr(relation, quantity)[order], color=BLUE, marker="o" if len(k) == 1 else "")
+    axis.set(xlabel="wavenumber $k$", ylabel=label, xscale="log" if _spans_decades(k) else "linear")
+    return axis
 
 
-def _spectra(spectra, figure, axes):
-    axes[1].remove()
-    axes[0].set_subplotspec(figure.add_gridspec(1, 1)[0])
-    for one in spectra:
+def spectra(found: list[Spectrum], axis: "Axes") -> "Axes":
+    """Growth rates against phase speeds, a colour for each spectrum."""
+    for one in found:
         speeds = [mode.phase_speed for mode in one.modes]
-        axes[0].plot(speeds, one.sigma.real, "o", markersize=4, label=f"$k$ = {one.k:g}")
-    axes[0].axhline(0, color=GREY, linewidth=0.6)
-    axes[0].set(xlabel=r"phase speed $c_r$", ylabel=r"growth rate $\sigma_r$")
-    axes[0].legend()
+        axis.plot(speeds, one.sigma.real, "o", markersize=4, label=f"$k$ = {one.k:g}")
+    axis.axhline(0, color=GREY, linewidth=0.6)
+    axis.set(xlabel=r"phase speed $c_r$", ylabel=r"growth rate $\sigma_r$")
+    axis.legend()
+    return axis
 
 
-def _optima(name, optima, left, right):
-    x = [getattr(optimum.flow, name) if name else 0.0 for optimum in optima]
-    quantities = ((left, "$k_{max}$", lambda m: m.k), (right, r"growth rate at $k_{max}$", lambda m: m.growth_rate))
-    for axis, label, get in quantities:
-        others = [(value, get(m)) for value, optimum in zip(x, optima, strict=True) for m in optimum.maxima[1:]]
-        if others:
-            axis.plot(*zip(*others, strict=True), ".", color=RED, markersize=4, label="other local maxima")
-            axis.legend()
-        best = [(value, get(o.maxima[0])) for value, o in zip(x, optima, strict=True) if o.maxima]
-        if best:
-            axis.plot(*zip(*best, strict=True), ".-", color=BLUE, markersize=4)
-        scale = "log" if len(x) > 1 and min(x) > 0 and _spans_decades(x) else "linear"
-        axis.set(xlabel=f"${name}$" if name and len(name) < 3 else name or "", ylabel=label, xscale=scale,
-                 yscale="log" if best and scale == "log" else "linear")
+def maxima(optimum: Optimum, axis: "Axes") -> "Axes":
+    """The maxima at (k, growth rate), with error bars in k."""
+    for one, color in zip(optimum.maxima, (BLUE, *[RED] * len(optimum.maxima)), strict=False):
+        axis.errorbar(one.k, one.growth_rate, xerr=one.error, fmt="o", color=color, markersize=4)
+    axis.set(xlabel="wavenumber $k$", ylabel=r"growth rate $\sigma_r$")
+    return axis
+
+
+def optima(found: Optima, axis: "Axes", quantity: str) -> "Axes":
+    """k_max or its growth rate against the swept parameter, other local maxima as dots."""
+    label = _label(OPTIMA, quantity)
+    name, field = found.over, "k" if quantity == "k_max" else quantity
+    x = [getattr(optimum.flow, name) if name else 0.0 for optimum in found.optima]
+    pairs = list(zip(x, found.optima, strict=True))
+    others = [(value, getattr(one, field)) for value, optimum in pairs for one in optimum.maxima[1:]]
+    if others:
+        axis.plot(*zip(*others, strict=True), ".", color=RED, markersize=4, label="other local maxima")
+        axis.legend()
+    best = [(value, getattr(optimum.maxima[0], field)) for value, optimum in pairs if optimum.maxima]
+    if best:
+        axis.plot(*zip(*best, strict=True), ".-", color=BLUE, markersize=4)
+    scale = "log" if len(x) > 1 and min(x) > 0 and _spans_decades(x) else "linear"
+    axis.set(xlabel=f"${name}$" if name and len(name) < 3 else name or "", ylabel=label, xscale=scale,
+             yscale="log" if best and scale == "log" else "linear")
+    return axis
+
+
+def mode(one: Mode, axis: "Axes") -> "Axes":
+    """|u| and |w| against z, layer by layer."""
+    for index, part in enumerate(Eigenfunction(one).profiles()):
+        for name, values, color in (("$|u|$", part.u, BLUE), ("$|w|$", part.w, RED)):
+            axis.plot(np.abs(values), part.z, color=color, label=None if index else name)
+    axis.set(xlabel=f"velocity at $k$ = {one.k:g}", ylabel="height $z$", xlim=(0, None))
+    axis.legend()
+    return axis
+
+
+def sensitivities(found: Sensitivities, axis: "Axes") -> "Axes":
+    """Relative changes of the growth rate per relative change of every parameter, as bars."""
+    rows = [row for row in found.rows() if row["elasticity"] is not None]
+    axis.barh([row["parameter"] for row in rows], [row["elasticity"] for row in rows], color=BLUE)
+    axis.axvline(0, color=GREY, linewidth=0.6)
+    axis.invert_yaxis()
+    axis.set(xlabel="relative change of the growth rate per relative change of the parameter")
+    return axis
 
 
 def _well_posedness(found, growth, left, right):
@@ -130,10 +201,8 @@ def _well_posedness(found, growth, left, right):
     right.legend(fontsize=7)
 
 
-def _comparison(found, figure, axes):
+def _comparison(found, axis):
     """Relative error against time, a curve for each method; dashed what it reports."""
-    axes[1].remove()
-    axes[0].set_subplotspec(figure.add_gridspec(1, 1)[0])
     scale = abs(found.reference.sigma)
     floor = np.finfo(float).eps / 2  # errors below are drawn there
     colors = {"collocation": BLUE, "bvp": RED, "bvp-thesis": "#d98200", "dense": GREY}
@@ -142,27 +211,31 @@ def _comparison(found, figure, axes):
         seconds = [one.seconds for one in rows]
         if rows:
             error = np.maximum([one.error / scale for one in rows], floor)
-            axes[0].loglog(seconds, error, ".-", color=color, label=method)
+            axis.loglog(seconds, error, ".-", color=color, label=method)
         if rows and rows[0].reported is not None:
             reported = np.maximum([one.reported / scale for one in rows], floor)
-            axes[0].loglog(seconds, reported, "--", color=color, linewidth=0.8)
-    axes[0].set(xlabel="CPU seconds per eigenvalue", ylabel="relative error (dashed: reported)")
-    axes[0].legend()
+            axis.loglog(seconds, reported, "--", color=color, linewidth=0.8)
+    axis.set(xlabel="CPU seconds per eigenvalue", ylabel="relative error (dashed: reported)")
+    axis.legend()
 
 
 def _spans_decades(values):
-    return max(values) > 20 * min(values)
+    return len(values) > 0 and max(values) > 20 * min(values)
 
 
-def _neutral_curve(curve, left, right):
+def neutral_curve(curve: NeutralCurve, axis: "Axes", quantity: str) -> "Axes":
+    """The parameter at zero growth or the phase speed there against k."""
+    label = _label(NEUTRAL, quantity)
     known = [point for point in curve.points if point.value is not None]
     k, value = curve.trace.T
-    left.plot(k, value, color=BLUE)
-    left.plot([point.k for point in known], [point.value for point in known], ".", color=BLUE, markersize=5)
-    right.plot([point.k for point in known], [point.phase_speed for point in known], ".", color=BLUE, markersize=5)
-    left.set(xlabel="wavenumber $k$", ylabel=f"{curve.vary} at zero growth",
-             xscale="log" if _spans_decades(k) else "linear", yscale="log" if _spans_decades(value) else "linear")
-    right.set(xlabel="wavenumber $k$", ylabel="phase speed $c_r$", xscale=left.get_xscale())
+    if quantity == "value":
+        axis.plot(k, value, color=BLUE)
+        axis.set_yscale("log" if _spans_decades(value) else "linear")
+        label = f"{curve.vary} {label}"
+    axis.plot([point.k for point in known], [getattr(point, quantity) for point in known], ".", color=BLUE,
+              markersize=5)
+    axis.set(xlabel="wavenumber $k$", ylabel=label, xscale="log" if _spans_decades(k) else "linear")
+    return axis
 
 
 def _neutral_points(name, points, left, right):

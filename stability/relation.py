@@ -1,15 +1,25 @@
 """Dispersion relations sigma(k): the surface mode followed from its long-wave limit, or the most unstable mode."""
 
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from .errors import ModeLost, ParameterError
-from .mode import DEGREES, TOLERANCE, Solver, check_wavenumbers, require
+from .mode import DEGREES, TOLERANCE, Mode, Solver, check_wavenumbers, require
+from .output import Row
+from .record import Record
 from .spectra import converged_rates, leading_modes, polished
 from .threads import one_thread
-from .tracking import follow, surface_mode
+from .tracking import Collision, follow, surface_mode
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from numpy.typing import ArrayLike
+
+    from .flows import Flow
+    from .wellposed import Outgrown
 
 MODES = ("surface", "leading", "most-unstable")
 
@@ -17,54 +27,106 @@ _ROUGH = 1e-4  # tolerance of the way to the first wavenumber
 _CLOSE = 1e-2  # relative distance of leading rates within which both are computed properly
 
 
-@dataclass(frozen=True)
-class DispersionRelation:
+@dataclass(frozen=True, repr=False)
+class DispersionRelation(Record):
     """sigma(k) of one mode. Arrays have shape (points,), in the order of k.
 
     `lost` maps wavenumbers at which the mode could not be followed to the reason (only with
-    strict=False); they are left out of the arrays. `collisions` lists the mergers met on the way.
+    strict=False); they are left out of the arrays, not of the rows. `collisions` lists the mergers met on the
+    way, `asked` all wavenumbers in the order asked for.
     """
 
     flow: Any
     mode: str
-    modes: tuple
-    lost: dict
-    collisions: tuple
+    modes: tuple[Any, ...]
+    lost: dict[float, str]
+    collisions: tuple[Collision, ...]
+    asked: tuple[float, ...] = ()
+    method: str = "collocation"
+    dimension: ClassVar[str] = "k"
 
     @property
-    def k(self):
+    def k(self) -> np.ndarray:
         return np.array([mode.k for mode in self.modes])
 
     @property
-    def sigma(self):
+    def sigma(self) -> np.ndarray:
         """Complex growth rates."""
         return np.array([mode.sigma for mode in self.modes])
 
     @property
-    def growth_rate(self):
+    def growth_rate(self) -> np.ndarray:
         return self.sigma.real
 
     @property
-    def phase_speed(self):
+    def phase_speed(self) -> np.ndarray:
         return np.array([mode.phase_speed for mode in self.modes])
 
     @property
-    def slope(self):
+    def slope(self) -> np.ndarray:
         """d sigma / dk."""
         return np.array([mode.slope for mode in self.modes])
 
     @property
-    def error(self):
+    def error(self) -> np.ndarray:
         """Bounds of the absolute error of sigma."""
         return np.array([mode.error for mode in self.modes])
 
     @property
-    def status(self):
+    def status(self) -> tuple[str, ...]:
         return tuple(mode.status for mode in self.modes)
+
+    def plot(self, ax: "Axes | None" = None, quantity: str = "growth_rate") -> "Axes":
+        """Draw growth_rate or phase_speed against k into the matplotlib Axes `ax`, or a new one; return it."""
+        from . import plots
+
+        return plots.dispersion(self, plots.axes_or_new(ax), quantity)
+
+    def rows(self) -> list[Row]:
+        rows, faster = [self._row(k, mode) for k, mode in self._points()], self._outgrown
+        if faster:
+            rows = [{**row, "status": f"{row['status']}; outgrown"} if row["k"] >= faster.k else row for row in rows]
+        return rows
+
+    def columns(self) -> dict[str, np.ndarray]:
+        columns = super().columns()
+        missing = np.isnan(columns["growth_rate"].astype(float))
+        for name in ("sigma", "slope"):
+            values = [getattr(mode, name, np.nan) for _, mode in self._points()]
+            columns[name] = np.where(missing, complex(np.nan, np.nan), np.array(values, dtype=complex))
+        return columns
+
+    def notes(self) -> list[str]:
+        notes = sorted({str(collision) for collision in self.collisions} | set(self.lost.values()))
+        return [*notes, f"{self.flow}: {self._outgrown}"] if self._outgrown else notes
+
+    def about(self) -> dict[str, Any]:
+        return {"mode": self.mode}
+
+    @cached_property
+    def _outgrown(self) -> "Outgrown | None":
+        """Where an internal mode of an ill-posed flow grows faster."""
+        from .wellposed import outgrown
+
+        return outgrown(self) if self.method == "collocation" else None
+
+    def _points(self) -> "list[tuple[float, Mode | None]]":
+        """Every wavenumber asked for with its mode, None where that was lost."""
+        found = {mode.k: mode for mode in self.modes}
+        return [(k, found.get(k)) for k in self.asked or (*self.k.tolist(), *self.lost)]
+
+    def _row(self, k: float, mode: Any) -> Row:
+        """Without numbers where the mode is lost, or where the most unstable one is not resolved: that is no result."""
+        resolution = "degree" if self.method == "collocation" else "nodes"
+        refused = mode is None or self.mode == "most-unstable" and mode.status != "resolved"
+        numbers = {name: None if refused else getattr(mode, name) for name in ("growth_rate", "phase_speed", "error")}
+        return {"k": k, **numbers, resolution: getattr(mode, resolution, None),
+                "status": mode.status if mode else "lost"}
 
 
 @one_thread
-def dispersion(flow, k, mode=None, *, tolerance=TOLERANCE, max_degree=DEGREES[-1], strict=True):
+def dispersion(flow: "Flow", k: "ArrayLike", mode: str | None = None, *, tolerance: float = TOLERANCE,
+               max_degree: int = DEGREES[-1], strict: bool = True) -> DispersionRelation:
     """Return the `DispersionRelation` of a flow at wavenumbers k, a number or a sequence in any order.
 
     mode="surface" follows the slow surface mode from its long-wave limit (the default where the flow has
@@ -73,6 +135,8 @@ def dispersion(flow, k, mode=None, *, tolerance=TOLERANCE, max_degree=DEGREES[-1
     Raises NotResolved or ModeLost; with strict=False the record says in `status` and `lost` what failed.
     """
     wavenumbers = check_wavenumbers(k)
+    if not len(wavenumbers):
+        raise ParameterError("k: at least one wavenumber is needed (got none)")
     mode = mode or default_mode(flow)
     if mode not in MODES:
         raise ParameterError(f"mode must be one of {', '.join(MODES)} (got {mode!r})")
@@ -86,10 +150,10 @@ def dispersion(flow, k, mode=None, *, tolerance=TOLERANCE, max_degree=DEGREES[-1
         for point in found.values():
             require(point)
     return DispersionRelation(flow, mode, tuple(found[value] for value in wavenumbers.tolist() if value in found), lost,
-                              tuple(collisions))
+                              tuple(collisions), tuple(wavenumbers.tolist()))
 
 
-def default_mode(flow):
+def default_mode(flow: "Flow") -> str:
     """The mode that a dispersion relation follows unless told otherwise."""
     return "surface" if flow.has_surface_mode() else "leading"
 

@@ -4,23 +4,117 @@ d rate / d p = y^H (dA/dp - rate dB/dp) x. The coefficients of the equations are
 step 1e-5), before anything cancels, so the result is good to 7 digits or more: enough for Newton.
 """
 
-from dataclasses import replace
-from math import prod
+from dataclasses import dataclass, fields, replace
+from math import isinf, prod
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from . import chebyshev
+from .eigenfunction import polished
 from .errors import ParameterError
+from .mode import Mode, Solver
+from .output import Row
+from .record import Record
 from .system import System
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+NO_DERIVATIVE = "no derivative"  # the status of a parameter without one begins with it
+
 _STEP = 1e-5
-_CENTRAL = {-1: -0.5, 1: 0.5}
-_FORWARD = {0: -1.5, 1: 2.0, 2: -0.5}
+_STENCILS = {-1: -0.5, 1: 0.5}, {0: -1.5, 1: 2.0, 2: -0.5}, {0: 1.5, -1: -2.0, -2: 0.5}  # offsets: weights
+_SAFETY = 2.0  # the errors of two slopes may cancel in part
+_ROUNDING = 1.0  # error of a slope in units of the rounding of sigma over the step (measured)
+_K_ERROR = 4.0  # error of d sigma/dk in units of error of sigma / k (measured)
+_TOLERANCE = 1e-3  # error of a slope relative to itself, or to sigma / parameter, accepted as resolved
 
 
-def parameter_slope(solver, mode, name):
-    """Return d sigma / d name of a mode of `solver.flow`, at fixed wavenumber."""
-    weights, flows = _neighbours(solver.flow, name)
+@dataclass(frozen=True)
+class Slope:
+    """d sigma / d parameter at its `value`, `error` a bound of its absolute error; None where there is none."""
+
+    parameter: str
+    value: float
+    slope: complex | None
+    error: float | None
+    status: str
+
+
+@dataclass(frozen=True, repr=False)
+class Sensitivities(Record):
+    """The slopes of the complex growth rate of a mode in every numeric parameter of its flow, and in "k"."""
+
+    flow: Any
+    mode: Mode
+    slopes: tuple[Slope, ...]
+    dimension: ClassVar[str] = "parameter"
+    bounded: ClassVar[str] = "the derivative of sigma"
+
+    @property
+    def k(self) -> float:
+        return self.mode.k
+
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw the elasticities as bars into the matplotlib Axes `ax`, or a new one; return it."""
+        from . import plots
+
+        return plots.sensitivities(self, plots.axes_or_new(ax))
+
+    def rows(self) -> list[Row]:
+        """Return a row of each parameter; `elasticity` is the relative change of the growth rate for its own."""
+        return [self._row(one) for one in self.slopes]
+
+    def about(self) -> dict[str, Any]:
+        return {"k": self.k}
+
+    def _row(self, one: Slope) -> Row:
+        row: Row = {"parameter": one.parameter, "value": one.value, "d_growth_rate": None, "d_phase_speed": None,
+                    "elasticity": None, "error": one.error, "status": one.status}
+        if one.slope is None:
+            return row
+        speed = (1j * one.slope - (self.mode.c if one.parameter == "k" else 0)) / self.k
+        growth = self.mode.growth_rate
+        elasticity = one.value * one.slope.real / growth + 0.0 if growth else None
+        return {**row, "d_growth_rate": one.slope.real, "d_phase_speed": speed.real + 0.0, "elasticity": elasticity}
+
+
+def sensitivities(mode: Mode) -> Sensitivities:
+    """Return the slopes of a mode in k and in every numeric parameter, each at the others fixed, with error bars."""
+    solver = Solver(mode.flow)
+    refined = polished(solver, mode)
+    error = _SAFETY * abs(refined.slope - mode.slope) + _K_ERROR * mode.error / mode.k
+    in_k = _slope(mode, "k", mode.k, refined.slope, error)
+    names = [item.name for item in fields(mode.flow) if "options" not in item.metadata]
+    return Sensitivities(mode.flow, mode, (in_k, *(_in_parameter(solver, mode, refined, name) for name in names)))
+
+
+def _in_parameter(solver: Solver, mode: Mode, refined: Mode, name: str) -> Slope:
+    """The slope from polished vectors; that from those of the mode, with twice the step, bounds its error."""
+    value = getattr(mode.flow, name)
+    if isinf(value):
+        return Slope(name, value, None, None, f"{NO_DERIVATIVE}: {name} is infinite")
+    try:
+        fine = parameter_slope(solver, refined, name)
+        coarse = parameter_slope(solver, mode, name, 2 * _STEP)
+    except ParameterError as reason:
+        return Slope(name, value, None, None, f"{NO_DERIVATIVE}: {reason}")
+    scale = abs(value) or 1.0
+    error = _SAFETY * abs(fine - coarse) + _K_ERROR * mode.error / scale + _ROUNDING * mode.rounding / (_STEP * scale)
+    return _slope(mode, name, value, complex(fine), error)
+
+
+def _slope(mode: Mode, name: str, value: float, slope: complex, error: float) -> Slope:
+    status = mode.status
+    if status == "resolved" and error > _TOLERANCE * max(abs(slope), abs(mode.sigma) / (abs(value) or 1.0)):
+        status = f"error {error:.1e} exceeds tolerance"
+    return Slope(name, value, slope, float(error), status)
+
+
+def parameter_slope(solver: Solver, mode: Mode, name: str, step: float = _STEP) -> complex:
+    """Return d sigma / d name of a mode of `solver.flow`, at fixed wavenumber; `step` is relative to its value."""
+    weights, flows = _neighbours(solver.flow, name, step)
     systems = [System(flow) for flow in flows]
     tables = [_symbols(flow, mode) for flow in (solver.flow, *flows)]
     pencil, here = solver.pencil(mode.degree), solver.assembly.system
@@ -40,11 +134,11 @@ def _symbols(flow, mode):
     return {"k": mode.k, "rate": mode.rate, **{name: parts[0][0] for name, parts in functions.items()}}
 
 
-def _neighbours(flow, name):
+def _neighbours(flow, name, step):
     """Weights (points,) of a difference formula in the parameter, and the flows at its points."""
     value = getattr(flow, name)
-    step = _STEP * (abs(value) or 1.0)
-    for stencil in (_CENTRAL, _FORWARD):
+    step = step * (abs(value) or 1.0)
+    for stencil in _STENCILS:
         try:
             flows = [replace(flow, **{name: value + offset * step}) for offset in stencil]
         except ParameterError:

@@ -9,37 +9,72 @@ nothing is filtered by size.
 
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from scipy.linalg import qr
 
 from .errors import ModeLost
-from .mode import DEGREES, TOLERANCE, Solver, check_wavenumbers, require
+from .mode import DEGREES, TOLERANCE, Mode, Solver, check_wavenumbers, require
+from .output import Row
+from .record import Record
 from .threads import one_thread
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _SHIFT = 0.01 - 0.013j  # tried when the pencil is singular at rate 0
 _SINGULAR = 1e14  # ratio of the two largest theta above which rate 0 is taken for an eigenvalue
 _SMALL = 10  # degree of the pencil whose finite eigenvalues are counted
 
 
-@dataclass(frozen=True)
-class Spectrum:
+@dataclass(frozen=True, repr=False)
+class Spectrum(Record):
     """The least stable modes of a flow at wavenumber k, sorted by decreasing growth rate."""
 
     flow: Any
     k: float
-    modes: tuple
+    modes: tuple[Mode, ...]
+    dimension: ClassVar[str] = "mode"
 
     @property
-    def sigma(self):
+    def sigma(self) -> np.ndarray:
         """Complex growth rates (modes,)."""
         return np.array([mode.sigma for mode in self.modes])
 
     @property
-    def error(self):
+    def error(self) -> np.ndarray:
         """Error bars of sigma (modes,)."""
         return np.array([mode.error for mode in self.modes])
+
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw growth rates against phase speeds into the matplotlib Axes `ax`, or a new one; return it."""
+        from . import plots
+
+        return plots.spectra([self], plots.axes_or_new(ax))
+
+    def rows(self) -> list[Row]:
+        """Return a row of each mode; `condition` is the condition number of the eigenvalue in the energy norm."""
+        from .energy import condition_numbers
+
+        numbers = condition_numbers(self.modes).tolist()
+        return [{**row, "condition": number, "status": row.pop("status")}
+                for row, number in zip(self._summary(), numbers, strict=True)]
+
+    def columns(self) -> dict[str, np.ndarray]:
+        return {**super().columns(), "sigma": self.sigma, "slope": np.array([mode.slope for mode in self.modes])}
+
+    def notes(self) -> list[str]:
+        from .wellposed import notes_on
+
+        return notes_on([self])
+
+    def about(self) -> dict[str, Any]:
+        return {"k": self.k}
+
+    def _summary(self) -> list[Row]:
+        names = ("k", "growth_rate", "phase_speed", "error", "degree", "status")
+        return [{name: getattr(mode, name) for name in names} for mode in self.modes]
 
 
 def finite_rates(solver, degree, symbols):

@@ -10,13 +10,11 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-from numpy.polynomial import chebyshev as C
 
-from . import chebyshev
 from .mode import Solver
 from .relation import dispersion
 from .rheology import condition, ill_posed, short_wave_growth
-from .spectra import finite_rates
+from .spectra import Spectrum, finite_rates
 from .threads import one_thread
 
 POINTS = 201
@@ -86,7 +84,7 @@ def well_posedness(flow, points=POINTS):
     parts, strips = [], []
     for layer in flow.layers(_numbers(flow)):
         s = (1 - np.cos(np.pi * np.arange(points) / (points - 1))) / 2
-        height = _height(layer, s)
+        height = layer.height(s)
         ratio, alpha, eta, rho = _coefficients(layer, s)
         ill = ill_posed(ratio, alpha)
         parts.append((np.full(points, layer.name), height, condition(ratio, alpha),
@@ -121,6 +119,19 @@ class Outgrown:
         pace = "that no degree resolves" if self.rate is None else f"({self.rate:.6g})"
         return (f"an internal mode {pace} outgrows the surface mode from k = {self.k:.6g} on: "
                 f"{'; '.join(map(str, self.strips))}")
+
+
+def notes_on(spectra: list[Spectrum]) -> list[str]:
+    """What an ill-posed flow does to its spectra: modes that do not converge, internal modes that lead it."""
+    flow = spectra[0].flow
+    strips = well_posedness(flow).strips
+    if not strips:
+        return []
+    notes = [f"{flow}, k = {one.k:g}: the spectrum does not converge; {'; '.join(map(str, strips))}"
+             for one in spectra if any(mode.status != "resolved" for mode in one.modes)]
+    wavenumbers = [one.k for one in spectra]
+    faster = outgrown(dispersion(flow, wavenumbers, strict=False)) if flow.has_surface_mode() else None
+    return [*notes, f"{flow}: {faster}"] if faster else notes
 
 
 @one_thread
@@ -172,20 +183,12 @@ def _coefficients(layer, s):
     return ratio, alpha, eta, rho
 
 
-def _height(layer, s):
-    """Distance from the lower edge, the integral of dz/ds."""
-    points = chebyshev.points(64)
-    slope = np.broadcast_to(np.asarray(layer.profile(points).dz, dtype=float), points.shape)
-    integral = C.chebint(chebyshev.coefficients(slope), lbnd=-1) / 2
-    return C.chebval(2 * s - 1, integral)
-
-
 def _strips(layer, s, ill):
     """The ill-posed intervals between points of either kind, their ends bisected."""
     changes = np.flatnonzero(ill[1:] != ill[:-1])
     ends = [_edge(layer, s[i], s[i + 1], ill[i]) for i in changes]
     ends = ([0.0] if ill[0] else []) + ends + ([1.0] if ill[-1] else [])
-    heights = _height(layer, np.array(ends)) if ends else []
+    heights = layer.height(np.array(ends)) if ends else []
     return [Strip(layer.name, float(low), float(high))
             for low, high in zip(heights[::2], heights[1::2], strict=True)]
 

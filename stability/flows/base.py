@@ -36,6 +36,8 @@ class Flow:
     order: ClassVar[int] = 0  # sigma = k^(1 + order) * rate
     surfaces: ClassVar[tuple[str, ...]] = ()
     functions: ClassVar[tuple[str, ...]] = ()
+    bottom: ClassVar[float] = 0.0  # z of the lowest edge
+    reflection: ClassVar[int] = 0  # of w in the lowest edge, 1 even or -1 odd, where that is a line of symmetry
 
     def __post_init__(self):
         for item in fields(self):

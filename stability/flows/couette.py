@@ -18,6 +18,7 @@ class Couette(Flow):
     title: ClassVar[str] = "plane Couette flow between two plates"
     scales: ClassVar[str] = ("length: half the distance of the plates; velocity: half their difference in speed; "
                              "Re: half-width * half the speed difference / kinematic viscosity")
+    bottom: ClassVar[float] = -1.0
 
     Re: float = parameter(1000.0, 0, meaning="Reynolds number of half-width and half the wall speed difference")
 

@@ -40,6 +40,10 @@ class Dune(Flow):
             return ("R",)
         return ("H",) if isinf(self.depth) else ()
 
+    @property
+    def bottom(self):
+        return 1 - self.shields
+
     def evaluate(self, k):
         if self.fluid == "closed-form":
             response = wavy_wall.response(k, self.Re, self.depth)

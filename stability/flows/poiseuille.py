@@ -15,6 +15,7 @@ class Poiseuille(Flow):
     title: ClassVar[str] = "plane Poiseuille flow between two plates"
     scales: ClassVar[str] = ("length: half the distance of the plates; velocity: on the centreline; "
                              "Re: half-width * centreline speed / kinematic viscosity")
+    bottom: ClassVar[float] = -1.0
 
     Re: float = parameter(1e4, 0, meaning="Reynolds number of half-width and centreline speed")
 
@@ -35,6 +36,9 @@ class Poiseuille(Flow):
 class EvenPoiseuille(Poiseuille):
     """The modes of plane Poiseuille flow with an even normal velocity (the unstable one is among them)."""
 
+    bottom: ClassVar[float] = 0.0
+    reflection: ClassVar[int] = 1
+
     def layers(self, names):
         return (Layer("fluid", lambda s: profile(s, self.Re, bottom=0)),)
 
@@ -50,6 +54,8 @@ class EvenPoiseuille(Poiseuille):
 @dataclass(frozen=True)
 class OddPoiseuille(EvenPoiseuille):
     """The modes of plane Poiseuille flow with an odd normal velocity."""
+
+    reflection: ClassVar[int] = -1
 
     def conditions(self, edges, names):
         """On the centreline w and t are odd; no slip on the plate."""

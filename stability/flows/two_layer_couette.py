@@ -30,6 +30,10 @@ class TwoLayerCouette(Flow):
     gravity: float = parameter(0.0, 0, closed=True, meaning="g * depth / speed^2 of the upper liquid and plate")
     tension: float = parameter(0.0, 0, closed=True, meaning="surface tension / (density * speed^2 * depth)")
 
+    @property
+    def bottom(self):
+        return -self.depth_ratio
+
     def layers(self, names):
         m, n = self.viscosity_ratio, self.depth_ratio
         return (

@@ -5,16 +5,16 @@ from contextlib import ExitStack
 from dataclasses import fields, replace
 from difflib import get_close_matches
 
-from .. import __version__
 from ..errors import ParameterError
 from ..flows import FLOWS
 from ..flows.base import allowed
 from ..mode import DEGREES, TOLERANCE
-from ..output import render, whole_file, write
+from ..output import header_of, render, whole_file, write
 from ..specs import parse_spec
 
 SPEC = "a number, a list a,b,c, or a range a:b:n (log-spaced) or a:b:n:lin"
 RESOLVED = "resolved"  # the status of a good row begins with it
+_DONE = (RESOLVED, "no derivative")  # or with this, where there is none to compute
 _PLOTS = (".png", ".pdf", ".svg")
 
 
@@ -98,30 +98,18 @@ def integer(text, name, low, high):
     return value
 
 
-def mode_row(mode):
-    return {"k": mode.k, "growth_rate": mode.growth_rate, "phase_speed": mode.phase_speed, "error": mode.error,
-            "degree": mode.degree, "status": mode.status}
-
-
-def lost_row(k):
-    return {"k": k, "growth_rate": None, "phase_speed": None, "error": None, "degree": None, "status": "lost"}
-
-
 def report(arguments, flow, compute):
     """Check where output goes, compute, write it; return the exit status."""
     with ExitStack() as stack:
         out = stack.enter_context(whole_file(arguments.output, "-o")) if arguments.output else None
         plot = _plot_file(arguments, stack)
         rows, result, notes = compute()
-        header = {"flow": flow.name, "parameters": {item.name: getattr(flow, item.name) for item in fields(flow)},
-                  "method": getattr(arguments, "method", "collocation"), "version": __version__}
-        if notes:
-            header["notes"] = notes
+        header = header_of(flow, getattr(arguments, "method", "collocation"), notes)
         if plot:
             from ..plots import draw  # matplotlib takes longer to import than most results to compute
 
             draw(result, plot)
-        failed = [row for row in rows if not row["status"].startswith(RESOLVED)]
+        failed = [row for row in rows if not row["status"].startswith(_DONE)]
         if not arguments.quiet:
             for note in notes:
                 print(f"stability: {note}", file=sys.stderr)

@@ -26,15 +26,8 @@ def _run(arguments):
 
     def compute():
         point = critical(flow, vary, long_wave=arguments.long_wave, strict=False, **options)
-        row = neutral_row(point)
+        row = point.row()
         status = row.pop("status")
         return [{**row, "k_error": point.k_error, "status": status}], (None, [point]), []
 
     return report(arguments, flow, compute)
-
-
-def neutral_row(point, swept=None):
-    """The row of a neutral point, headed by the swept parameter if there is one."""
-    row = {swept: getattr(point.flow, swept)} if swept else {}
-    return {**row, "k": point.k, point.vary: point.value, "phase_speed": point.phase_speed, "error": point.error,
-            "status": point.status}

@@ -3,8 +3,7 @@
 from ..errors import ParameterError
 from ..relation import MODES, DispersionRelation, default_mode, dispersion
 from ..specs import parse_spec
-from ..wellposed import outgrown
-from .common import RESOLVED, add_verb, flow_of, k_option, lost_row, mode_row, options_of, progress, report
+from .common import add_verb, flow_of, k_option, options_of, progress, report
 from .methods import INTERRUPTED, INTERRUPTED_STATUS, method_of, method_options
 
 
@@ -37,22 +36,7 @@ def _run(arguments):
 
 def _collocation(flow, wavenumbers, mode, options):
     relation = dispersion(flow, wavenumbers, mode, strict=False, **options)
-    found = {mode.k: mode for mode in relation.modes}
-    row = _refusing_row if mode == "most-unstable" else mode_row
-    rows = [row(found[k]) if k in found else lost_row(k) for k in wavenumbers.tolist()]
-    notes = sorted({str(collision) for collision in relation.collisions} | set(relation.lost.values()))
-    faster = outgrown(relation)
-    if faster:
-        notes.append(f"{flow}: {faster}")
-        rows = [{**row, "status": f"{row['status']}; outgrown"} if row["k"] >= faster.k else row for row in rows]
-    return rows, relation, notes
-
-
-def _refusing_row(mode):
-    """An unresolved most unstable mode is no result: the row says what failed, without the number."""
-    if mode.status == RESOLVED:
-        return mode_row(mode)
-    return {**lost_row(mode.k), "degree": mode.degree, "status": mode.status}
+    return relation.rows(), relation, relation.notes()
 
 
 def _continuation(arguments, flow, wavenumbers, bvp, lost):
@@ -62,13 +46,7 @@ def _continuation(arguments, flow, wavenumbers, bvp, lost):
     found = continue_in_k(flow, wavenumbers, report=lambda done, total: progress(arguments, done, total), **bvp)
     lost.update(found.lost)
     points = {point.k: point for point in found.points}
-    rows = [_point_row(k, points.get(k)) for k in wavenumbers.tolist()]
-    ordered = tuple(points[k] for k in wavenumbers.tolist() if k in points)
-    return rows, DispersionRelation(flow, MODES[0], ordered, found.lost, ()), sorted(set(found.lost.values()))
-
-
-def _point_row(k, point):
-    if point is None:
-        return {"k": k, "growth_rate": None, "phase_speed": None, "error": None, "nodes": None, "status": "lost"}
-    return {"k": k, "growth_rate": point.growth_rate, "phase_speed": point.phase_speed, "error": point.error,
-            "nodes": point.nodes, "status": point.status}
+    asked = tuple(wavenumbers.tolist())
+    relation = DispersionRelation(flow, MODES[0], tuple(points[k] for k in asked if k in points), found.lost, (), asked,
+                                  arguments.method)
+    return relation.rows(), relation, relation.notes()

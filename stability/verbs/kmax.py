@@ -1,7 +1,7 @@
 """stability kmax: the fastest growing wavenumber, over a parameter."""
 
 from ..errors import StabilityError
-from ..optimum import Optimum, k_max_sweep
+from ..optimum import Optima, Optimum, k_max_sweep
 from .common import SPEC, add_verb, flow_of, options_of, progress, report, sweep_of
 from .methods import INTERRUPTED, INTERRUPTED_STATUS, method_of, method_options
 
@@ -30,7 +30,8 @@ def _run(arguments):
                 progress(arguments, len(found), len(sweep))
         except KeyboardInterrupt:
             found.extend(Optimum(one, (), INTERRUPTED) for one in sweep[len(found):])
-        return [_row(name, optimum) for optimum in found], (name, found), []
+        sweep_found = Optima(flow, name, tuple(found), arguments.method)
+        return sweep_found.rows(), sweep_found, []
 
     status = report(arguments, flow, compute)
     return INTERRUPTED_STATUS if found and found[-1].status == INTERRUPTED else status
@@ -45,11 +46,3 @@ def _bounded(flow, bvp):
     except StabilityError as reason:
         return Optimum(flow, (), str(reason))
     return Optimum(flow, (found,), found.mode.status)
-
-
-def _row(name, optimum):
-    row = {name: getattr(optimum.flow, name)} if name else {}
-    best = optimum if optimum.maxima else None
-    for key in ("k_max", "growth_rate", "phase_speed", "error"):
-        row[key] = getattr(best, key) if best else None
-    return {**row, "maxima": [[m.k, m.growth_rate] for m in optimum.maxima], "status": optimum.status}

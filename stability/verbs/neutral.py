@@ -3,7 +3,7 @@
 from ..errors import ParameterError
 from ..specs import parse_spec
 from .common import SPEC, add_verb, flow_of, options_of, progress, report, sweep_of
-from .critical import long_wave_option, neutral_row, vary_option
+from .critical import long_wave_option, vary_option
 
 
 def add(verbs):
@@ -43,7 +43,7 @@ def _over(arguments, flow, vary, options):
         for point in critical_sweep(sweep, vary, long_wave=arguments.long_wave, **options):
             found.append(point)
             progress(arguments, len(found), len(sweep))
-        return [neutral_row(point, name) for point in found], (name, found), []
+        return [{name: getattr(point.flow, name), **point.row()} for point in found], (name, found), []
 
     return report(arguments, flow, compute)
 
@@ -55,6 +55,6 @@ def _curve(arguments, flow, vary, options):
 
     def compute():
         curve = neutral_curve(flow, vary, wavenumbers, **options)
-        return [neutral_row(point) for point in curve.points], curve, []
+        return curve.rows(), curve, []
 
     return report(arguments, flow, compute)

@@ -1,11 +1,9 @@
 """stability spectrum: the least stable modes at one wavenumber."""
 
-from ..energy import condition_numbers
-from ..relation import dispersion
 from ..specs import parse_spec
 from ..spectra import spectrum
-from ..wellposed import outgrown, well_posedness
-from .common import RESOLVED, add_verb, flow_of, integer, k_option, mode_row, options_of, report
+from ..wellposed import notes_on
+from .common import add_verb, flow_of, integer, k_option, options_of, report
 
 
 def add(verbs):
@@ -24,25 +22,6 @@ def _run(arguments):
 
     def compute():
         found = [spectrum(flow, k, count, strict=False, **options) for k in wavenumbers.tolist()]
-        return [row for one in found for row in _rows(one)], found, _warnings(flow, wavenumbers, found)
+        return [row for one in found for row in one.rows()], found, notes_on(found)
 
     return report(arguments, flow, compute)
-
-
-def _rows(one):
-    """Rows of the modes; `condition` is the condition number of the eigenvalue in the energy norm."""
-    for mode, condition in zip(one.modes, condition_numbers(one.modes).tolist(), strict=True):
-        row = mode_row(mode)
-        status = row.pop("status")
-        yield {**row, "condition": condition, "status": status}
-
-
-def _warnings(flow, wavenumbers, found):
-    """What an ill-posed flow does to its spectrum: modes that do not converge, internal modes that lead it."""
-    strips = well_posedness(flow).strips
-    if not strips:
-        return []
-    notes = [f"{flow}, k = {one.k:g}: the spectrum does not converge; {'; '.join(map(str, strips))}"
-             for one in found if any(mode.status != RESOLVED for mode in one.modes)]
-    faster = outgrown(dispersion(flow, wavenumbers, strict=False)) if flow.has_surface_mode() else None
-    return [*notes, f"{flow}: {faster}"] if faster else notes

@@ -1,0 +1,130 @@
+"""The eigenfunction of a mode in physical units, at any height of its flow.
+
+The series of a mode hold scaled unknowns (see `stability.layer`). Scaled back, they are perturbations of velocity
+and stress proportional to exp(i k x + sigma t), for a unit amplitude of the first surface.
+"""
+
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import chebyshev as C
+
+from . import chebyshev
+from .errors import ParameterError
+from .layer import FIELDS
+from .mode import DEGREES, Mode, Solver
+
+_SAMPLES = 96  # points that carry the coefficients of the base flow, and the maximum of |u| on each layer
+_BISECTIONS = 60
+_ROUNDING = 1e-12  # of the thickness of the flow: heights this little outside lie on the edge
+_AT_REST = 1e-10  # amplitude / max |u| below which a surface does not take part in a mode
+_ODD_WITH_W = np.array([-1, 1, 1, -1, -1])  # parity of u, w, t, n, p relative to that of w
+
+
+@dataclass(frozen=True)
+class Fields:
+    """A mode at heights z: perturbations of velocity u (along the wave), w (normal to the flow), shear stress t,
+    normal stress n and pressure p, complex arrays of the shape of z, and the amplitudes of the `surfaces`.
+
+    The amplitude of the first surface is 1; where there is none or it stays at rest, u = 1 where |u| is largest. An
+    interface between two layers counts to the lower one. Lengths, velocities and stresses are in the scales
+    of the flow; in a steady layer (the fluid over a dune) in its own, those of its profile.
+    """
+
+    z: np.ndarray
+    u: np.ndarray
+    w: np.ndarray
+    t: np.ndarray
+    n: np.ndarray
+    p: np.ndarray
+    surfaces: dict[str, complex]
+
+
+def polished(solver: Solver, mode: Mode) -> Mode:
+    """The mode with vectors as accurate as its eigenvalue: refined once more, at the next degree.
+
+    The error of an eigenvalue is the product of those of its vectors, which may therefore lack half its digits.
+    """
+    degree = next((degree for degree in DEGREES if degree > mode.degree), mode.degree)
+    return solver.solve(mode.k, mode.rate, (mode.degree, mode.x, mode.y), degree)
+
+
+class Eigenfunction:
+    """A mode as functions of height: `edges` (layers+1,) bound its layers, `low` .. `high` what it covers."""
+
+    def __init__(self, mode: Mode) -> None:
+        flow, solver = mode.flow, Solver(mode.flow)
+        mode = polished(solver, mode)
+        columns = solver.pencil(mode.degree).columns
+        self.k, self.degree, self.order, self.reflection = mode.k, mode.degree, flow.order, flow.reflection
+        self.layers = flow.layers(SimpleNamespace(**{name: value[0] for name, value in solver.symbols(mode.k).items()}))
+        thickness = [float(layer.height(np.array(1.0))) for layer in self.layers]
+        self.edges = flow.bottom + np.concatenate(([0.0], np.cumsum(thickness)))
+        self.high = self.edges[-1]
+        self.low = 2 * self.edges[0] - self.high if self.reflection else self.edges[0]
+        self._slack = _ROUNDING * (self.high - self.low)
+        self._series = [np.array([mode.x[columns[f"{layer.name}.{field}"]] for field in FIELDS]).T
+                        for layer in self.layers]
+        amplitudes = {name: complex(mode.x[columns[name]][0]) for name in flow.surfaces}
+        self._scale = 1 / self._reference(next(iter(amplitudes.values()), 0.0))
+        self.surfaces = {name: value * self._scale for name, value in amplitudes.items()}
+
+    def _reference(self, amplitude: complex) -> complex:
+        """The amplitude, or the u of largest modulus where the amplitude is 0."""
+        self._scale = 1.0
+        s = np.linspace(0, 1, 16 * _SAMPLES + 1)
+        u = np.concatenate([self._at(index, s)[0] for index in range(len(self.layers))])
+        largest = complex(u[np.argmax(np.abs(u))])
+        return amplitude if abs(amplitude) > _AT_REST * abs(largest) else largest
+
+    def at(self, z: Any) -> Fields:
+        """Return the `Fields` at heights z, a number or an array; raises ParameterError outside the layers."""
+        heights = np.asarray(z, dtype=float)
+        flat = heights.ravel()
+        outside = flat[~((flat >= self.low - self._slack) & (flat <= self.high + self._slack))]
+        if len(outside):
+            raise ParameterError(f"z must lie in the layers of the flow, [{self.low:g}, {self.high:g}] "
+                                 f"(got {outside[0]:g})")
+        mirrored = flat < self.edges[0] - self._slack
+        inside = np.where(mirrored, 2 * self.edges[0] - flat, flat)
+        values = np.zeros((5, len(flat)), complex)
+        layer_of = np.searchsorted(self.edges[1:-1], inside - self._slack)
+        for index in range(len(self.layers)):
+            here = layer_of == index
+            values[:, here] = self._at(index, self._s(index, inside[here]))
+        values[:, mirrored] *= self.reflection * _ODD_WITH_W[:, None]
+        return Fields(heights, *values.reshape(5, *heights.shape), self.surfaces)
+
+    def profiles(self, count: int = 401) -> list[Fields]:
+        """The fields on each layer from edge to edge, at `count` heights."""
+        lower = np.array([self.low, *(self.edges[1:-1] + 2 * self._slack)])
+        return [self.at(np.linspace(*ends, count)) for ends in zip(lower, self.edges[1:], strict=True)]
+
+    def _s(self, index: int, z: np.ndarray) -> np.ndarray:
+        """The points 0 <= s <= 1 of a layer at heights z, by bisection."""
+        layer, bottom, top = self.layers[index], self.edges[index], self.edges[index + 1]
+        low, high = np.zeros_like(z), np.ones_like(z)
+        for _ in range(_BISECTIONS):
+            middle = (low + high) / 2
+            below = bottom + layer.height(middle) < z
+            low, high = np.where(below, middle, low), np.where(below, high, middle)
+        return np.where(z <= bottom, 0.0, np.where(z >= top, 1.0, low))
+
+    def _at(self, index: int, s: np.ndarray) -> np.ndarray:
+        """u, w, t, n, p (5, points) at the points s of a layer."""
+        v, w, t, n = (chebyshev.at(s, self.degree) @ self._series[index]).T
+        points = chebyshev.points(_SAMPLES)
+        base = self.layers[index].profile(points)
+        along = 1j * self.k**self.order
+        viscous = _values(base.eta * base.g, s) * (along * v)  # eta u: finite where eta is not
+        fields = (_values(base.g, s) * (along * v), self.k ** (1 + self.order) * w, along * t, n,
+                  -n - 2j * self.k * viscous)
+        return self._scale * np.array(fields, dtype=complex)
+
+
+def _values(samples: Any, s: np.ndarray) -> np.ndarray:
+    """A coefficient given at the sample points (or a number), at the points s."""
+    full = np.broadcast_to(np.asarray(samples, dtype=float), _SAMPLES)
+    return C.chebval(2 * s - 1, chebyshev.coefficients(full))

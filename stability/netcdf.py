@@ -1,0 +1,94 @@
+"""A result as a netCDF 3 file: every column a variable along the dimension of the result, self-describing."""
+
+import io
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+from scipy.io import netcdf_file
+
+from .record import Record
+
+CONVENTION = ("normal mode exp(i k x + sigma t): positive growth_rate = Re sigma is unstable; "
+              "c = i sigma / k, positive phase_speed = Re c is downstream")
+MEANINGS = {
+    "k": "wavenumber",
+    "k_max": "wavenumber of the largest growth rate",
+    "growth_rate": "real part of the complex growth rate sigma",
+    "phase_speed": "real part of the complex wave speed i sigma / k",
+    "sigma": "complex growth rate",
+    "slope": "derivative of sigma with respect to k",
+    "degree": "Chebyshev degree",
+    "condition": "condition number of the eigenvalue in the energy norm",
+    "status": "resolved, or what failed",
+    "parameter": "parameter of the flow, or k",
+    "value": "value of the parameter",
+    "d_growth_rate": "derivative of the growth rate with respect to the parameter",
+    "d_phase_speed": "derivative of the phase speed with respect to the parameter",
+    "elasticity": "relative change of the growth rate per relative change of the parameter",
+    "maxima_k": "wavenumbers of all local maxima of the growth rate",
+    "maxima_growth_rate": "growth rates of all local maxima",
+}
+
+_RENAMED = {"mode": "mode_followed"}  # scipy's file object has an attribute `mode` of its own
+
+
+def encode(record: Record) -> bytes:
+    """Return the content of the file."""
+    buffer = io.BytesIO()
+    with netcdf_file(buffer, "w") as file:
+        for name, value in _attributes(record).items():
+            setattr(file, _RENAMED.get(name, name), _plain(value))
+        for name, values in record.columns().items():
+            for part, numbers in _real(name, values):
+                _add(file, record, part, numbers, _meaning(record, name, part))
+        file.flush()
+        return buffer.getvalue()
+
+
+def _attributes(record: Record) -> dict[str, Any]:
+    header = record.header()
+    return {"title": f"{type(record).__name__} of {record.flow.title}", **header.pop("parameters"),
+            **{name: "\n".join(value) if name == "notes" else value for name, value in header.items()},
+            **record.about(), "scales": record.flow.scales, "convention": CONVENTION}
+
+
+def _plain(value: Any) -> Any:
+    """Text as bytes in UTF-8, numbers in double precision: the writer would take single."""
+    return value.encode() if isinstance(value, str) else np.float64(value)
+
+
+def _real(name: str, values: np.ndarray) -> list[tuple[str, np.ndarray]]:
+    if not np.iscomplexobj(values):
+        return [(name, values)]
+    return [(f"{name}_real", values.real), (f"{name}_imag", values.imag)]
+
+
+def _meaning(record: Record, name: str, part: str) -> str:
+    parameters = {item.name: item.metadata["meaning"] for item in fields(record.flow)}
+    meaning = {**parameters, **MEANINGS, "error": f"bound of the absolute error of {record.bounded}"}.get(name, name)
+    return meaning if part == name else f"{meaning}, {'real' if part.endswith('real') else 'imaginary'} part"
+
+
+def _add(file: netcdf_file, record: Record, name: str, values: np.ndarray, meaning: str) -> None:
+    """Add a variable (count,), (count, maximum) or, of texts, (count, length)."""
+    second = "maximum"
+    if values.dtype.kind == "U":
+        values, second = _characters(values), f"{name}_length"
+    dimensions = (record.dimension, second)[:values.ndim]
+    for dimension, length in zip(dimensions, values.shape, strict=True):
+        if dimension not in file.dimensions:
+            file.createDimension(dimension, length)
+    variable = file.createVariable(name, {"f": "d", "i": "i", "S": "c"}[values.dtype.kind], dimensions)
+    variable[:] = values
+    variable.long_name = meaning.encode()
+    if values.dtype.kind == "S":
+        variable._Encoding = b"utf-8"
+    else:
+        variable.units = b"1"  # the scales are an attribute of the file
+
+
+def _characters(texts: np.ndarray) -> np.ndarray:
+    encoded = np.char.encode(texts, "utf-8")
+    width = max(1, encoded.dtype.itemsize)
+    return encoded.astype(f"S{width}").view("S1").reshape(len(texts), width)

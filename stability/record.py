@@ -1,0 +1,84 @@
+"""What every result can do: print itself as a short table, write itself to a file."""
+
+import os
+from typing import Any
+
+import numpy as np
+
+from .output import Row, header_of, render, table, whole_file
+
+_HEAD, _TAIL = 4, 2  # rows shown of a long table
+Target = str | os.PathLike[str]
+
+
+class Record:
+    """Base of the results: frozen dataclasses with a `flow`. A subclass gives its `rows`.
+
+    Its `columns` lie along `dimension`; `bounded` is what the column `error` bounds.
+    """
+
+    flow: Any
+    dimension: str
+    bounded: str = "sigma"
+    method: str = "collocation"
+
+    def rows(self) -> list[Row]:
+        """Return the table that the command line prints, as dicts with the same keys; None where there is no number."""
+        raise NotImplementedError
+
+    def columns(self) -> dict[str, np.ndarray]:
+        """Return the arrays of a netCDF file, (count,) along `dimension`; complex ones are written in two parts."""
+        return columns_of(self.rows())
+
+    def notes(self) -> list[str]:
+        """Return what else there is to know of the result, a sentence each."""
+        return []
+
+    def about(self) -> dict[str, Any]:
+        """Return what the result was asked for besides the flow, {name: text or number}."""
+        return {}
+
+    def header(self) -> dict[str, Any]:
+        """Return flow, parameters, method, version, and the notes if there are any."""
+        return header_of(self.flow, self.method, self.notes())
+
+    def to_csv(self, path: Target) -> None:
+        """Write the rows as CSV, flow and parameters as comments; raises ParameterError where that cannot be done."""
+        self._write(path, "to_csv", render("csv", self.header(), self.rows()).encode())
+
+    def to_json(self, path: Target) -> None:
+        """Write header and rows as JSON; raises ParameterError where that cannot be done."""
+        self._write(path, "to_json", render("json", self.header(), self.rows()).encode())
+
+    def to_netcdf(self, path: Target) -> None:
+        """Write the columns as netCDF 3, missing numbers as nan; raises ParameterError where that cannot be done."""
+        from .netcdf import encode  # scipy.io is slow to import
+
+        self._write(path, "to_netcdf", encode(self))
+
+    def _write(self, path: Target, name: str, content: bytes) -> None:
+        with whole_file(path, name) as temporary:
+            temporary.write_bytes(content)
+
+    def _summary(self) -> list[Row]:
+        """The rows that `repr` shows: those that cost nothing to compute."""
+        return self.rows()
+
+    def __repr__(self) -> str:
+        rows = self._summary()
+        resolved = sum(row["status"].startswith("resolved") for row in rows)
+        about = "".join(f", {name} {value}" for name, value in self.about().items())
+        title = f"{type(self).__name__} of {self.flow}{about}: {resolved} of {len(rows)} resolved"
+        if not rows:
+            return title
+        if len(rows) <= _HEAD + _TAIL + 1:
+            return f"{title}\n{table(rows)}".rstrip()
+        lines = table(rows[:_HEAD] + rows[-_TAIL:]).splitlines()
+        return "\n".join([title, *lines[:_HEAD + 1], "...", *lines[_HEAD + 1:]])
+
+
+def columns_of(rows: list[Row]) -> dict[str, np.ndarray]:
+    """Arrays (rows,) of the rows; nan for None among numbers."""
+    table = {name: [row[name] for row in rows] for name in rows[0]}
+    return {name: np.array([np.nan if value is None else value for value in values])
+            for name, values in table.items() if not any(isinstance(value, list) for value in values)}

@@ -1,0 +1,43 @@
+"""stability sensitivity: how growth rate and phase speed change with every parameter."""
+
+from ..errors import ModeLost, ParameterError
+from ..relation import MODES, default_mode, dispersion
+from ..specs import parse_spec
+from .common import add_verb, flow_of, options_of, report
+
+_MODES = MODES[:2]  # a mode that can be followed
+
+
+def add(verbs):
+    add_verb(verbs, "sensitivity", _run, "how growth rate and phase speed change with every parameter",
+             "stability sensitivity dune --k 1 --plot dune.png", _k_option, _mode_option)
+
+
+def _k_option(verb):
+    verb.add_argument("--k", required=True, metavar="K", help="wavenumber")
+
+
+def _mode_option(verb):
+    verb.add_argument("--mode", metavar="MODE", help=f"one of {', '.join(_MODES)}; default: surface where the flow has "
+                      "a slow surface mode")
+
+
+def _run(arguments):
+    flow, options = flow_of(arguments), options_of(arguments)
+    k = parse_spec(arguments.k, "--k")
+    if len(k) != 1:
+        raise ParameterError(f"--k: one wavenumber at a time (got {len(k)})")
+    mode = arguments.mode or default_mode(flow)
+    if mode not in _MODES:
+        raise ParameterError(f"--mode: must be one of {', '.join(_MODES)} (got {mode!r})")
+
+    def compute():
+        from ..sensitivity import sensitivities
+
+        relation = dispersion(flow, k, mode, strict=False, **options)
+        for reason in relation.lost.values():
+            raise ModeLost(reason)
+        found = sensitivities(relation.modes[0])
+        return found.rows(), found, relation.notes()
+
+    return report(arguments, flow, compute)
