@@ -1,0 +1,194 @@
+"""What results can do: print themselves, write themselves as the command line does, draw themselves."""
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from scipy.io import netcdf_file
+
+from stability import ParameterError, __version__, dispersion, flows, k_max, spectrum
+from stability.cli import main
+from stability.neutral import neutral_curve
+from stability.optimum import Optima, k_max_sweep
+from stability.sensitivity import sensitivities
+
+BED = flows.Dune()
+LOST = {"mode": "most-unstable", "max_degree": 14, "strict": False}
+
+
+def sweep():
+    return Optima(BED, "Re", tuple(k_max_sweep(replace(BED, Re=Re) for Re in (10.0, 1.0))))
+
+
+RECORDS = {
+    "dispersion": lambda: dispersion(BED, [1.0, 0.01, 3.0]),
+    "pair": lambda: dispersion(flows.Vortex(Fr2=5.0), [0.1, 1.0, 10.0]),
+    "unresolved": lambda: dispersion(flows.Dune(shields=3.0), [8.0, 1.0], **LOST),
+    "outgrown": lambda: dispersion(flows.Dune(shields=1.05, mu1=0.7), [3.0, 10.0]),
+    "spectrum": lambda: spectrum(flows.Vortex(), 2.0, 3),
+    "optimum": lambda: k_max(BED),
+    "none": lambda: k_max(flows.Vortex(), strict=False),
+    "sweep": sweep,
+    "neutral": lambda: neutral_curve(flows.Poiseuille(), "Re", [1.0, 1.2]),
+    "sensitivity": lambda: sensitivities(dispersion(BED, 1.0).modes[0]),
+}
+COMMANDS = {
+    "dispersion": "dispersion dune --k 1,0.01,3",
+    "pair": "dispersion vortex --Fr2 5 --k 0.1,1,10",
+    "unresolved": "dispersion dune --shields 3 --k 8,1 --mode most-unstable --max-degree 14",
+    "outgrown": "dispersion dune --shields 1.05 --mu1 0.7 --k 3,10",
+    "spectrum": "spectrum vortex --k 2 --modes 3",
+    "optimum": "kmax dune",
+    "none": "kmax vortex",
+    "sweep": "kmax dune --over Re=10,1",
+    "neutral": "neutral poiseuille --vary Re --k 1,1.2",
+    "sensitivity": "sensitivity dune --k 1",
+}
+
+
+@pytest.fixture(scope="module")
+def record():
+    """The records by name, each made once."""
+    return cache(lambda name: RECORDS[name]())
+
+
+@pytest.mark.parametrize("name", RECORDS)
+@pytest.mark.parametrize("form", ["csv", "json"])
+def test_files_are_those_of_the_command_line(tmp_path, capsys, record, name, form):
+    target = tmp_path / f"a b é {name}.{form}"
+    getattr(record(name), f"to_{form}")(target)
+    main([*COMMANDS[name].split(), f"--{form}", "--quiet"])
+    assert target.read_text(encoding="utf-8") == capsys.readouterr().out
+    assert list(tmp_path.iterdir()) == [target]
+
+
+@pytest.mark.parametrize("name", RECORDS)
+def test_netcdf_holds_every_number_of_the_rows(tmp_path, record, name):
+    target, one = tmp_path / "é ü.nc", record(name)
+    one.to_netcdf(str(target))
+    with netcdf_file(target, mmap=False) as file:
+        assert file.flow.decode() == one.flow.name
+        assert file.version.decode() == __version__
+        assert b"exp(i k x + sigma t)" in file.convention
+        for parameter, value in one.header()["parameters"].items():
+            stored = getattr(file, parameter)
+            assert (stored.decode() if isinstance(value, str) else stored) == value
+        for column in one.rows()[0].keys() - {"maxima"}:
+            variable = file.variables[column]
+            assert variable.long_name
+            assert variable.dimensions[0] == one.dimension
+            values = [row[column] for row in one.rows()]
+            if isinstance(values[0], str):
+                assert [b"".join(text).rstrip(b"\0").decode() for text in variable[:]] == values
+            else:
+                assert variable.units == b"1"
+                np.testing.assert_array_equal(variable[:], [np.nan if value is None else value for value in values])
+
+
+def test_netcdf_of_a_dispersion_relation_has_complex_numbers_in_two_parts(tmp_path, record):
+    one = record("dispersion")
+    one.to_netcdf(tmp_path / "x.nc")
+    with netcdf_file(tmp_path / "x.nc", mmap=False) as file:
+        assert file.variables["k"].dimensions == ("k",)
+        assert file.mode_followed == b"surface"
+        for name in ("sigma", "slope"):
+            parts = [file.variables[f"{name}_{part}"][:] for part in ("real", "imag")]
+            np.testing.assert_array_equal(parts[0] + 1j * parts[1], getattr(one, name))
+
+
+def test_netcdf_of_a_sweep_has_all_maxima(tmp_path):
+    flow = flows.Dune(shields=3.0, Re=0.01)
+    found = Optima(flow, "Re", tuple(k_max_sweep([flow, replace(flow, Re=10.0)])))
+    found.to_netcdf(tmp_path / "x.nc")
+    with netcdf_file(tmp_path / "x.nc", mmap=False) as file:
+        assert file.variables["maxima_k"].dimensions == ("Re", "maximum")
+        first, second = file.variables["maxima_k"][:]
+    assert first.tolist() == [one.k for one in found.optima[0].maxima]
+    assert (second[0], np.isnan(second[1])) == (found.optima[1].k_max, True)
+
+
+def test_netcdf_opens_in_xarray(tmp_path, record):
+    xarray = pytest.importorskip("xarray")
+    one = record("dispersion")
+    one.to_netcdf(tmp_path / "x.nc")
+    with xarray.open_dataset(tmp_path / "x.nc", engine="scipy") as data:
+        assert data.growth_rate.sel(k=3.0) == one.growth_rate[2]
+        assert data.status.values.tolist() == ["resolved"] * 3
+        assert data.attrs["mu1"] == 0.4
+        assert data.k.attrs == {"long_name": "wavenumber", "units": "1"}
+
+
+@pytest.mark.parametrize("form", ["csv", "json", "netcdf"])
+def test_what_cannot_be_written_says_so_and_leaves_nothing(tmp_path, record, form):
+    with pytest.raises(ParameterError, match=f"to_{form}: cannot write .*nowhere"):
+        getattr(record("optimum"), f"to_{form}")(tmp_path / "nowhere" / "x")
+    (tmp_path / "taken").mkdir()
+    with pytest.raises(ParameterError, match="it is a directory"):
+        getattr(record("optimum"), f"to_{form}")(tmp_path / "taken")
+    assert [path.name for path in tmp_path.iterdir()] == ["taken"]
+
+
+def test_repr_is_a_short_table():
+    lines = repr(dispersion(BED, np.geomspace(0.01, 10, 200))).splitlines()
+    assert lines[0] == f"DispersionRelation of {BED}, mode surface: 200 of 200 resolved"
+    assert lines[1].split() == ["k", "growth_rate", "phase_speed", "error", "degree", "status"]
+    assert [line.split()[0] for line in lines[2:]] == ["0.01", "0.01035321843", "0.01071891319", "0.01109752496", "...",
+                                                       "9.658832241", "10"]
+
+
+@pytest.mark.parametrize("name", RECORDS)
+def test_repr_counts_what_is_resolved(record, name):
+    text, rows = repr(record(name)), record(name).rows()
+    good = sum(row["status"].startswith("resolved") for row in rows)
+    assert text.splitlines()[0].endswith(f": {good} of {len(rows)} resolved")
+    assert len(text.splitlines()) == 2 + len(rows)
+
+
+@pytest.mark.parametrize("name", RECORDS)
+def test_every_record_draws_into_given_axes_or_new_ones(record, name):
+    from matplotlib import pyplot
+
+    axis = Figure().subplots()
+    assert record(name).plot(axis) is axis
+    new = record(name).plot()
+    assert new.figure.number in pyplot.get_fignums()
+    pyplot.close(new.figure)
+    assert new.get_ylabel() == axis.get_ylabel()
+
+
+def test_a_relation_is_drawn_in_the_order_of_k(record):
+    axis = Figure().subplots()
+    one = record("dispersion")
+    one.plot(axis, "phase_speed")
+    k, speed = axis.lines[-1].get_data()
+    assert k.tolist() == [0.01, 1.0, 3.0]
+    assert speed.tolist() == [one.phase_speed[i] for i in (1, 0, 2)]
+    with pytest.raises(ParameterError, match="quantity must be one of growth_rate, phase_speed"):
+        one.plot(axis, "colour")
+
+
+@pytest.mark.parametrize("k", [1.0, [1.0], (1,), np.array([1.0]), np.float64(1.0)])
+def test_wavenumbers_of_any_kind(k):
+    assert dispersion(flows.Vortex(), k).k.tolist() == [1.0]
+
+
+def test_no_wavenumber_is_refused():
+    with pytest.raises(ParameterError, match="k: at least one wavenumber is needed"):
+        dispersion(flows.Vortex(), [])
+
+
+def test_results_do_without_heavy_packages():
+    heavy = ["sympy", "matplotlib", "scipy.special", "scipy.integrate", "scipy.io"]
+    code = ("import sys; from stability import dispersion, flows; m = dispersion(flows.Vortex(), 1.0); repr(m); "
+            f"m.modes[0].fields(0.5); m.modes[0].sensitivity(); print([name for name in {heavy} if name in sys.modules])")
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"
+
+
+def test_rows_are_json(record):
+    for name in RECORDS:
+        json.dumps(record(name).rows())
