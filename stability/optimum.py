@@ -132,7 +132,7 @@ class Optima(Record):
         return [{**self._swept(optimum), **row} for optimum in self.optima for row in optimum.rows()]
 
     def columns(self) -> dict[str, np.ndarray]:
-        """Return the columns of the rows, sigma at k_max, and all maxima as arrays (optima, maximum) if there is one."""
+        """Return the columns of the rows, sigma at k_max, and all maxima as arrays (optima, maximum) if any."""
         most = max(len(optimum.maxima) for optimum in self.optima)
         maxima = np.full((2, len(self.optima), most), np.nan)
         sigma = np.full(len(self.optima), complex(np.nan, np.nan))

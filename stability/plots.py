@@ -172,7 +172,7 @@ def sensitivities(found: Sensitivities, axis: "Axes") -> "Axes":
     axis.barh([row["parameter"] for row in rows], [row["elasticity"] for row in rows], color=BLUE)
     axis.axvline(0, color=GREY, linewidth=0.6)
     axis.invert_yaxis()
-    axis.set(xlabel="relative change of the growth rate per relative change of the parameter")
+    axis.set(xlabel="elasticity of the growth rate")
     return axis
 
 

@@ -185,7 +185,8 @@ def test_no_wavenumber_is_refused():
 def test_results_do_without_heavy_packages():
     heavy = ["sympy", "matplotlib", "scipy.special", "scipy.integrate", "scipy.io"]
     code = ("import sys; from stability import dispersion, flows; m = dispersion(flows.Vortex(), 1.0); repr(m); "
-            f"m.modes[0].fields(0.5); m.modes[0].sensitivity(); print([name for name in {heavy} if name in sys.modules])")
+            f"m.modes[0].fields(0.5); m.modes[0].sensitivity(); "
+            f"print([name for name in {heavy} if name in sys.modules])")
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"
 
 
