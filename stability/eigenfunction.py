@@ -95,7 +95,8 @@ class Eigenfunction:
             here = layer_of == index
             values[:, here] = self._at(index, self._s(index, inside[here]))
         values[:, mirrored] *= self.reflection * _ODD_WITH_W[:, None]
-        return Fields(heights, *values.reshape(5, *heights.shape), self.surfaces)
+        u, w, t, n, p = values.reshape(5, *heights.shape)
+        return Fields(heights, u, w, t, n, p, self.surfaces)
 
     def profiles(self, count: int = 401) -> list[Fields]:
         """The fields on each layer from edge to edge, at `count` heights."""

@@ -1,6 +1,6 @@
 """Figures of results, drawn without a display and ready for print."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from .wellposed import WellPosedness
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-STYLE = {
+STYLE: dict[Any, Any] = {
     "figure.constrained_layout.use": True,
     "font.size": 9,
     "axes.spines.top": False,
@@ -226,14 +226,13 @@ def _spans_decades(values):
 def neutral_curve(curve: NeutralCurve, axis: "Axes", quantity: str) -> "Axes":
     """The parameter at zero growth or the phase speed there against k."""
     label = _label(NEUTRAL, quantity)
-    known = [point for point in curve.points if point.value is not None]
+    known = [(point.k, getattr(point, quantity)) for point in curve.points if point.value is not None]
     k, value = curve.trace.T
     if quantity == "value":
         axis.plot(k, value, color=BLUE)
         axis.set_yscale("log" if _spans_decades(value) else "linear")
         label = f"{curve.vary} {label}"
-    axis.plot([point.k for point in known], [getattr(point, quantity) for point in known], ".", color=BLUE,
-              markersize=5)
+    axis.plot(*np.array(known, dtype=float).reshape(-1, 2).T, ".", color=BLUE, markersize=5)
     axis.set(xlabel="wavenumber $k$", ylabel=label, xscale="log" if _spans_decades(k) else "linear")
     return axis
 

@@ -12,15 +12,20 @@ Target = str | os.PathLike[str]
 
 
 class Record:
-    """Base of the results: frozen dataclasses with a `flow`. A subclass gives its `rows`.
-
-    Its `columns` lie along `dimension`; `bounded` is what the column `error` bounds.
-    """
+    """Base of the results: frozen dataclasses with a `flow`. A subclass gives its `rows` and `dimension`."""
 
     flow: Any
-    dimension: str
-    bounded: str = "sigma"
     method: str = "collocation"
+
+    @property
+    def dimension(self) -> str:
+        """Name of the dimension along which the columns lie."""
+        raise NotImplementedError
+
+    @property
+    def bounded(self) -> str:
+        """What the column `error` bounds."""
+        return "sigma"
 
     def rows(self) -> list[Row]:
         """Return the table that the command line prints, as dicts with the same keys; None where there is no number."""

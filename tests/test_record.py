@@ -77,7 +77,7 @@ def test_netcdf_holds_every_number_of_the_rows(tmp_path, record, name):
         assert b"exp(i k x + sigma t)" in file.convention
         for parameter, value in one.header()["parameters"].items():
             stored = getattr(file, parameter)
-            assert (stored.decode() if isinstance(value, str) else stored) == value
+            assert (stored.decode() if isinstance(value, str) else float(stored)) == value
         for column in one.rows()[0].keys() - {"maxima"}:
             variable = file.variables[column]
             assert variable.long_name
@@ -119,7 +119,7 @@ def test_netcdf_opens_in_xarray(tmp_path, record):
     with xarray.open_dataset(tmp_path / "x.nc", engine="scipy") as data:
         assert data.growth_rate.sel(k=3.0) == one.growth_rate[2]
         assert data.status.values.tolist() == ["resolved"] * 3
-        assert data.attrs["mu1"] == 0.4
+        assert float(data.attrs["mu1"]) == 0.4
         assert data.k.attrs == {"long_name": "wavenumber", "units": "1"}
 
 
@@ -175,6 +175,16 @@ def test_a_relation_is_drawn_in_the_order_of_k(record):
 @pytest.mark.parametrize("k", [1.0, [1.0], (1,), np.array([1.0]), np.float64(1.0)])
 def test_wavenumbers_of_any_kind(k):
     assert dispersion(flows.Vortex(), k).k.tolist() == [1.0]
+
+
+def test_lost_wavenumbers_keep_their_place_among_the_rows(record, tmp_path):
+    one = record("dispersion")
+    part = replace(one, modes=one.modes[1:], lost={1.0: "why"})
+    assert [(row["k"], row["growth_rate"] is None, row["status"]) for row in part.rows()] == [
+        (1.0, True, "lost"), (0.01, False, "resolved"), (3.0, False, "resolved")]
+    assert part.notes() == ["why"]
+    assert np.isnan(part.columns()["sigma"]).tolist() == [True, False, False]
+    part.to_netcdf(tmp_path / "x.nc")
 
 
 def test_no_wavenumber_is_refused():
