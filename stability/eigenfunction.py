@@ -42,7 +42,7 @@ class Fields:
     surfaces: dict[str, complex]
 
 
-def polished(solver: Solver, mode: Mode) -> Mode:
+def sharpened(solver: Solver, mode: Mode) -> Mode:
     """The mode with vectors as accurate as its eigenvalue: refined once more, at the next degree.
 
     The error of an eigenvalue is the product of those of its vectors, which may therefore lack half its digits.
@@ -56,7 +56,7 @@ class Eigenfunction:
 
     def __init__(self, mode: Mode) -> None:
         flow, solver = mode.flow, Solver(mode.flow)
-        mode = polished(solver, mode)
+        mode = sharpened(solver, mode)
         columns = solver.pencil(mode.degree).columns
         self.k, self.degree, self.order, self.reflection = mode.k, mode.degree, flow.order, flow.reflection
         self.layers = flow.layers(SimpleNamespace(**{name: value[0] for name, value in solver.symbols(mode.k).items()}))

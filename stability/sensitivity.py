@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from . import chebyshev
-from .eigenfunction import polished
+from .eigenfunction import sharpened
 from .errors import ParameterError
 from .mode import Mode, Solver
 from .output import Row
@@ -83,7 +83,7 @@ class Sensitivities(Record):
 def sensitivities(mode: Mode) -> Sensitivities:
     """Return the slopes of a mode in k and in every numeric parameter, each at the others fixed, with error bars."""
     solver = Solver(mode.flow)
-    refined = polished(solver, mode)
+    refined = sharpened(solver, mode)
     error = _SAFETY * abs(refined.slope - mode.slope) + _K_ERROR * mode.error / mode.k
     in_k = _slope(mode, "k", mode.k, refined.slope, error)
     names = [item.name for item in fields(mode.flow) if "options" not in item.metadata]
@@ -91,7 +91,7 @@ def sensitivities(mode: Mode) -> Sensitivities:
 
 
 def _in_parameter(solver: Solver, mode: Mode, refined: Mode, name: str) -> Slope:
-    """The slope from polished vectors; that from those of the mode, with twice the step, bounds its error."""
+    """The slope from sharpened vectors; that from those of the mode, with twice the step, bounds its error."""
     value = getattr(mode.flow, name)
     if isinf(value):
         return Slope(name, value, None, None, f"{NO_DERIVATIVE}: {name} is infinite")
