@@ -106,7 +106,7 @@ class Optima(Record):
     >>> bed = flows.Dune()
     >>> found = Optima(bed, "Re", tuple(k_max_sweep(replace(bed, Re=Re) for Re in (1.0, 10.0))))
     >>> [f"{optimum.k_max:.6f}" for optimum in found.optima]
-    ['0.355087', '0.849202']
+    ['0.584606', '0.849202']
     """
 
     flow: Any
