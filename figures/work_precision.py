@@ -3,7 +3,7 @@
 Vortices (slope 30 degrees, Fr2 0.1, k 2) and dunes (shields 2, mu1 0.4, b 1, Re 10, k 1) against power series in
 30-digit arithmetic, plane Poiseuille flow (Re 1e4, k 1) against a recomputed 24-digit value that agrees with the
 published 0.23752649 + 0.00373967 i (Orszag 1971). Errors are relative. Times are CPU times per eigenvalue of a sweep
-of 51 wavenumbers, everything included; dense solves of textbook collocation gain nothing from a sweep and are timed
+of 201 wavenumbers, everything included; dense solves of textbook collocation gain nothing from a sweep and are timed
 alone. The thin dashed curve is the error that the collocation method itself reports. Run time: about 4 minutes on
 one core, 20 s with --fast; ratios of times are worth more than times.
 """

@@ -26,7 +26,7 @@ COLLOCATION_DEGREES = tuple(degree for degree in DEGREES if degree <= 128)
 DENSE_DEGREES = (8, 12, 16, 24, 32, 48, 64, 96, 128)
 RESIDUALS = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 THESIS_RESIDUALS = (1e-3, 1e-4, 1e-5)
-POINTS, SPAN = 51, 2.0  # of the sweep, from k / SPAN to k * SPAN
+POINTS, SPAN = 201, 2.0  # of the sweep, from k / SPAN to k * SPAN
 
 _SECONDS = 0.15  # spent on repeating each measurement, at least
 _REPEATS = 3
