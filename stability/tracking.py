@@ -6,7 +6,6 @@ y_old^H B x_new * y_new^H B x_old near 1 (between different modes the product va
 and slopes at its two ends fit one smooth curve.
 """
 
-from bisect import bisect_right
 from contextlib import suppress
 from dataclasses import dataclass
 from math import copysign, exp, log
@@ -107,8 +106,7 @@ def _between(solver, segments, wavenumbers):
     factorisations.
     """
     found, gaps = {}, {}
-    for k in wavenumbers.tolist():
-        nodes, index = _interval(segments, k)
+    for k, (nodes, index) in zip(wavenumbers.tolist(), _intervals(segments, wavenumbers), strict=True):
         exact = [node for node in nodes[index: index + 2] if node.k == k]
         if exact or len(nodes) == 1:
             found[k] = exact[0] if exact else _Walk(solver, nodes[0]).to(k)
@@ -121,10 +119,9 @@ def _between(solver, segments, wavenumbers):
     found |= _refined(solver, first)
     for nodes, _, inside in gaps.values():
         finer = sorted([*nodes, *(found[k] for k in inside if k in found)], key=lambda node: node.k)
-        rest = {}
-        for k in inside:
-            if k not in found:
-                rest.setdefault(_interval([finer], k)[1], []).append(k)
+        missing, rest = [k for k in inside if k not in found], {}
+        for k, (_, place) in zip(missing, _intervals([finer], missing), strict=True):
+            rest.setdefault(place, []).append(k)
         second += [(finer, place, ks) for place, ks in rest.items()]
     found |= _refined(solver, second)
     return [found[k] for k in wavenumbers.tolist()]
@@ -148,19 +145,20 @@ def _refined(solver, groups):
     return found
 
 
-def _interval(segments, k):
-    """The segment that contains k, or the one that ends nearest to it, and the node at or before k."""
-    def outside(nodes):
-        ends = sorted(log(node.k) for node in (nodes[0], nodes[-1]))
-        return max(ends[0] - log(k), log(k) - ends[1], 0.0)
-
-    nodes = min(segments, key=outside)
-    if outside(nodes):
-        nearest = min(nodes[0], nodes[-1], key=lambda node: abs(log(node.k / k)))
-        return [nearest], 0
-    direction = copysign(1, nodes[-1].k - nodes[0].k)
-    index = bisect_right(nodes, direction * k, key=lambda node: direction * node.k) - 1
-    return nodes, min(max(index, 0), max(len(nodes) - 2, 0))
+def _intervals(segments, wavenumbers):
+    """For each wavenumber the segment that contains it, or the one that ends nearest to it, and the node before it."""
+    logs, t = [np.log([node.k for node in nodes]) for nodes in segments], np.log(wavenumbers)
+    outside = np.array([np.maximum(np.maximum(ends.min() - t, t - ends.max()), 0) for ends in logs])
+    places = []
+    for at, which, far in zip(t, outside.argmin(axis=0).tolist(), outside.min(axis=0), strict=True):
+        nodes, ends = segments[which], logs[which]
+        if far:
+            places.append(([min(nodes[0], nodes[-1], key=lambda node, at=at: abs(log(node.k) - at))], 0))
+            continue
+        side = 1 if ends[-1] >= ends[0] else -1
+        index = int(np.searchsorted(side * ends, side * at, side="right")) - 1
+        places.append((nodes, min(max(index, 0), max(len(nodes) - 2, 0))))
+    return places
 
 
 def _interpolate(solver, nodes, index, t, degree):
