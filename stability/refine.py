@@ -24,7 +24,7 @@ from .stack import square
 _EPS = np.finfo(float).eps
 _TINY = np.finfo(float).tiny
 _FACTORISATIONS = 12
-_SWEEPS = 8  # of the shared iteration
+_SWEEPS = 12  # of the shared iteration
 _OFFSET = 1e-3  # of a shared factorisation from its rate: it must not be singular
 
 

@@ -25,7 +25,7 @@ _STEPS = 2000
 _GRID = 0.05  # spacing in log k of the wavenumbers that a survey lands on
 _FEW = 3  # wavenumbers that are walked to one by one
 _MANY = 8  # wavenumbers between two nodes that are refined one by one
-_ANCHORS = 3  # of more than these, so many become nodes first
+_ANCHORS = 2  # of more than these, so many become nodes first
 _DRIFT = 0.05  # largest relative difference of a refined rate from its interpolation
 _AGREEMENT = 0.03  # of the surface mode with its long-wave limit, in value and in slope
 
@@ -91,6 +91,7 @@ def follow(solver, start, wavenumbers):
         if len(wavenumbers) <= _FEW:
             modes = [walk.to(k) for k in wavenumbers.tolist()]
         else:
+            walk.grid = np.sort(wavenumbers)
             walk.to(float(wavenumbers[-1]))
             modes = _between(solver, walk.segments, wavenumbers)
         return Path(tuple(modes), tuple(walk.collisions))
@@ -222,11 +223,11 @@ class _Walk:
         raise self._lost(f"{_STEPS} steps did not reach k = {k:g}")
 
     def _land(self, k):
-        """The last grid point before k, if it lies ahead, else k."""
+        """The last grid point before k, if that is not much nearer, else k."""
         if self.grid is None:
             return k
         before = float(self.grid[max(np.searchsorted(self.grid, k) - 1, 0)])
-        return before if before > self.now.k else k
+        return before if (self.now.k * k) ** 0.5 < before < k else k
 
     def _advance(self, k):
         """Take one step to k, or shorten the step, or cross a collision."""
