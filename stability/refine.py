@@ -91,16 +91,16 @@ def refine_many(pencil, weights, rate, x, y, groups, bars=True):
     x, y = np.ascontiguousarray(x), np.ascontiguousarray(y)
     middles = [(group.start + group.stop) // 2 for group in groups]
     factors = [_factors(pencil, weights.value[:, i], rate[i] * (1 + _OFFSET)) for i in middles]
-    project = _Projection(pencil, weights.value[:, middles], x[:, middles], y[:, middles], groups)
+    project = _Projection(pencil, weights.value[:, middles], x[:, middles], y[:, middles])
     stack, x_change, y_change = pencil.stack, np.zeros(len(rate)), np.zeros(len(rate))
     for _ in range(_SWEEPS):
         products = stack.times(x)
         rate = _rate(pencil, weights.value * stack.brackets(y, products))
         spread = stack.spread(weights.value * pencil.powers(rate))
         right, left = stack.total(spread, products), stack.total_left(spread, y)
-        solved = [(f.solve(right[:, group]), f.solve_left(left[:, group]))
-                  for f, group in zip(factors, groups, strict=True)]
-        dx, dy = project(*(np.concatenate(parts, axis=1) for parts in zip(*solved, strict=True)))
+        solved = [project(i, f.solve(right[:, group]), f.solve_left(left[:, group]))
+                  for i, (f, group) in enumerate(zip(factors, groups, strict=True))]
+        dx, dy = (np.concatenate(parts, axis=1) for parts in zip(*solved, strict=True))
         x, y = x - dx, y - dy
         x_change, x_error = _converging(dx, x, x_change)
         y_change, y_error = _converging(dy, y, y_change)
@@ -116,17 +116,14 @@ class _Projection:
     The shared factorisations are nearly singular, and a step with them is mostly that: a change of scale.
     """
 
-    def __init__(self, pencil, weights, x, y, groups):
-        bx, by = pencil.b(weights, x), pencil.b_left(weights, y)
-        norm = (by * x).sum(axis=0)
-        self._own = np.repeat(np.arange(len(groups)), [group.stop - group.start for group in groups])
+    def __init__(self, pencil, weights, x, y):
+        self._bx, self._by = pencil.b(weights, x), pencil.b_left(weights, y)
+        norm = (self._by * x).sum(axis=0)
         self._x, self._y = x / norm, y / norm
-        self._bx, self._by = bx, by
 
-    def __call__(self, dx, dy):
-        own = self._own
-        along_x, along_y = (self._by[:, own] * dx).sum(axis=0), (self._bx[:, own] * dy).sum(axis=0)
-        return dx - self._x[:, own] * along_x, dy - self._y[:, own] * along_y
+    def __call__(self, group, dx, dy):
+        along_x, along_y = self._by[:, group] @ dx, self._bx[:, group] @ dy
+        return dx - np.outer(self._x[:, group], along_x), dy - np.outer(self._y[:, group], along_y)
 
 
 def _factors(pencil, weights, rate):

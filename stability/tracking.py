@@ -25,7 +25,7 @@ _STEPS = 2000
 _GRID = 0.05  # spacing in log k of the wavenumbers that a survey lands on
 _FEW = 3  # wavenumbers that are walked to one by one
 _MANY = 8  # wavenumbers between two nodes that are refined one by one
-_ANCHORS = 2  # of more than these, so many become nodes first
+_STRIDE = 2.0  # of n more than these every _STRIDE sqrt(n)-th becomes a node first
 _DRIFT = 0.05  # largest relative difference of a refined rate from its interpolation
 _AGREEMENT = 0.03  # of the surface mode with its long-wave limit, in value and in slope
 
@@ -115,7 +115,7 @@ def _between(solver, segments, wavenumbers):
             gaps.setdefault((id(nodes), index), (nodes, index, []))[2].append(k)
     first, second = [], []
     for nodes, index, inside in gaps.values():
-        coarse = inside if len(inside) <= _MANY else inside[:: -(-len(inside) // _ANCHORS)]
+        coarse = inside if len(inside) <= _MANY else inside[:: int(_STRIDE * len(inside) ** 0.5)]
         first += [(nodes, index, [k]) for k in coarse]
     found |= _refined(solver, first)
     for nodes, _, inside in gaps.values():
