@@ -5,13 +5,14 @@ converge: waves across the strip cannot be shorter than it is thick. Its interna
 and beyond some k no degree resolves them. The slow surface mode need not notice, but it is not what one would see.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
-from .mode import Solver
+from .mode import DEGREES as RUNGS
+from .mode import Assembly, Solver
 from .relation import dispersion
 from .rheology import condition, ill_posed, short_wave_growth
 from .spectra import Spectrum, finite_rates
@@ -20,7 +21,7 @@ from .threads import one_thread
 POINTS = 201
 DEGREES = (16, 24, 32, 48, 64)
 
-_CHECK_DEGREES = (16, 24)  # of the look for a faster mode
+_CHECK_DEGREE = 16, 96  # least and largest of the look for a faster mode; between them that of the surface mode
 _FASTER = 1e-6  # relative excess of growth that counts as faster
 _SETTLED = 1e-4  # relative difference of two degrees that counts as converged
 
@@ -159,10 +160,42 @@ def outgrown(relation):
     return Outgrown(modes[above].k, fine if abs(fine - coarse) < _SETTLED * abs(fine) else None, strips)
 
 
+def flag_outgrown(optima):
+    """Yield each `Optimum`, "; outgrown" added to its status where another mode grows faster at its k_max.
+
+    Well-posed flows are not searched. Flows with the same equations share their matrices, as in `k_max_sweep`.
+    """
+    known = None
+    for optimum in optima:
+        faster, known = _outgrown_at(optimum, known)
+        yield replace(optimum, status=f"{optimum.status}; outgrown") if faster else optimum
+
+
+@one_thread
+def _outgrown_at(optimum, known):
+    """Whether another mode is faster, and (assembly, strips) to be used again."""
+    if not optimum.maxima:
+        return False, known
+    assembly = known[0].serving(optimum.flow) if known else Assembly(optimum.flow)
+    if not known or assembly is not known[0]:
+        known = assembly, well_posedness(optimum.flow).strips
+    solver = Solver(optimum.flow, assembly=assembly)
+    return bool(known[1]) and _faster(solver, optimum.best.mode) is not None, known
+
+
 def _faster(solver, mode):
-    """Leading growth rates at two degrees if both exceed that of this mode, else None."""
-    rates = [_leading(solver, mode.k, degree) for degree in _CHECK_DEGREES]
-    return rates if min(rates) > mode.growth_rate + _FASTER * abs(mode.sigma) + 10 * mode.error else None
+    """Leading growth rates at two degrees if both exceed that of this mode, else None.
+
+    A degree that does not resolve the mode itself would miss its rivals.
+    """
+    threshold = mode.growth_rate + _FASTER * abs(mode.sigma) + 10 * mode.error
+    rung = RUNGS.index(min(max(mode.degree, _CHECK_DEGREE[0]), _CHECK_DEGREE[1]))
+    rates = []
+    for degree in (RUNGS[rung], RUNGS[rung + 2]):
+        rates.append(_leading(solver, mode.k, degree))
+        if rates[-1] <= threshold:
+            return None
+    return rates
 
 
 def _leading(solver, k, degree):

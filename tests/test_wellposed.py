@@ -7,9 +7,10 @@ import pytest
 
 from stability import NotResolved, dispersion, flows, spectrum
 from stability.cli import main
+from stability.optimum import k_max_sweep
 from stability.relation import DispersionRelation
 from stability.rheology import Linear, well_posed_band
-from stability.wellposed import growth_with_degree, outgrown, well_posedness
+from stability.wellposed import flag_outgrown, growth_with_degree, outgrown, well_posedness
 
 ILL = flows.Dune(shields=1.05, mu1=0.7, b=1.0, Re=10.0)
 INTERNAL = 7327.0151706242 + 24715.4910767460j  # power series in 30-digit arithmetic
@@ -136,3 +137,20 @@ def test_command_reports_growth_by_degree(capsys):
     assert status == 3
     assert first["status"] == "resolved"
     assert second["status"] == "unresolved: still moves at degree 64"
+
+
+@pytest.mark.parametrize(("shields", "mu1", "Re", "overtaken"), [
+    (1.02, 0.7, 3e3, True), (1.02, 0.7, 10.0, False), (2.0, 0.4, 10.0, False),
+    (2.604, 0.7, 0.1, True),  # the surface mode needs degree 56 there, and below 24 its rival is not seen
+])
+def test_an_internal_mode_ahead_at_k_max_is_noticed(shields, mu1, Re, overtaken):
+    flow = flows.Dune(shields=shields, mu1=mu1, Re=Re)
+    (optimum,) = flag_outgrown(k_max_sweep([flow]))
+    leading = spectrum(flow, optimum.k_max, 1).modes[0]
+    assert optimum.status.endswith("outgrown") == overtaken == (leading.growth_rate > optimum.growth_rate + 1e-6)
+
+
+def test_kmax_says_which_points_are_outgrown(capsys):
+    status, out, _ = run(capsys, "kmax", "dune", "--shields", "1.02", "--mu1", "0.7", "--over", "Re=10,3e3", "--json")
+    assert status == 0
+    assert [row["status"] for row in json.loads(out)["rows"]] == ["resolved", "resolved; outgrown"]

@@ -2,6 +2,7 @@
 
 from ..errors import StabilityError
 from ..optimum import Optima, Optimum, k_max_sweep
+from ..wellposed import flag_outgrown
 from .common import SPEC, add_verb, flow_of, options_of, progress, report, sweep_of
 from .methods import INTERRUPTED, INTERRUPTED_STATUS, method_of, method_options
 
@@ -23,7 +24,7 @@ def _run(arguments):
     found = []
 
     def compute():
-        optima = k_max_sweep(sweep, **options) if bvps[0] is None else map(_bounded, sweep, bvps)
+        optima = flag_outgrown(k_max_sweep(sweep, **options)) if bvps[0] is None else map(_bounded, sweep, bvps)
         try:
             for optimum in optima:
                 found.append(optimum)
