@@ -19,3 +19,7 @@ class NotResolved(StabilityError):
 
 class ModeLost(StabilityError):
     """A mode could not be followed without risking a jump to another one."""
+
+
+class WorkersLost(StabilityError):
+    """Worker processes end again and again before they have finished anything."""

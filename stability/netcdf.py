@@ -26,6 +26,11 @@ MEANINGS = {
     "d_growth_rate": "derivative of the growth rate with respect to the parameter",
     "d_phase_speed": "derivative of the phase speed with respect to the parameter",
     "elasticity": "relative change of the growth rate per relative change of the parameter",
+    "growth_error": "bound of the absolute error of sigma",
+    "k_error": "bound of the absolute error of k",
+    "maxima": "number of local maxima of the growth rate",
+    "second_k_max": "wavenumber of the second largest maximum of the growth rate",
+    "second_growth_rate": "growth rate of the second largest maximum",
     "maxima_k": "wavenumbers of all local maxima of the growth rate",
     "maxima_growth_rate": "growth rates of all local maxima",
 }
@@ -71,11 +76,12 @@ def _meaning(record: Record, name: str, part: str) -> str:
 
 
 def _add(file: netcdf_file, record: Record, name: str, values: np.ndarray, meaning: str) -> None:
-    """Add a variable (count,), (count, maximum) or, of texts, (count, length)."""
+    """Add a variable along the dimensions of the record and one more: of maxima, or of the characters of texts."""
     second = "maximum"
     if values.dtype.kind == "U":
         values, second = _characters(values), f"{name}_length"
-    dimensions = (record.dimension, second)[:values.ndim]
+    own = (name,) if name in record.dimensions else record.dimensions
+    dimensions = (*own, second)[:values.ndim]
     for dimension, length in zip(dimensions, values.shape, strict=True):
         if dimension not in file.dimensions:
             file.createDimension(dimension, length)
@@ -91,4 +97,4 @@ def _add(file: netcdf_file, record: Record, name: str, values: np.ndarray, meani
 def _characters(texts: np.ndarray) -> np.ndarray:
     encoded = np.char.encode(texts, "utf-8")
     width = max(1, encoded.dtype.itemsize)
-    return encoded.astype(f"S{width}").view("S1").reshape(len(texts), width)
+    return encoded.astype(f"S{width}").view("S1").reshape(*texts.shape, width)

@@ -6,7 +6,7 @@ import json
 import os
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import fields
 from math import isinf
@@ -19,10 +19,10 @@ from .errors import ParameterError
 Row = dict[str, Any]
 
 
-def header_of(flow: Any, method: str, notes: Sequence[str] = ()) -> dict[str, Any]:
-    """What belongs to a whole result: flow, parameters, method, version, and notes if there are any."""
-    header = {"flow": flow.name, "parameters": {item.name: getattr(flow, item.name) for item in fields(flow)},
-              "method": method, "version": __version__}
+def header_of(flow: Any, method: str, notes: Sequence[str] = (), swept: Collection[str] = ()) -> dict[str, Any]:
+    """What belongs to a whole result: flow, parameters but the swept ones, method, version, and notes if any."""
+    parameters = {item.name: getattr(flow, item.name) for item in fields(flow) if item.name not in swept}
+    header = {"flow": flow.name, "parameters": parameters, "method": method, "version": __version__}
     return {**header, "notes": list(notes)} if notes else header
 
 
@@ -89,13 +89,9 @@ def whole_file(path: str | os.PathLike[str], name: str) -> Iterator[Path]:
     Raises ParameterError, naming the option `name`, where the file cannot be written.
     """
     path = Path(path)
+    temporary = _temporary(path, name)
     try:
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name[:100]}.", suffix=path.suffix)
-    except OSError as reason:
-        raise ParameterError(f"{name}: cannot write {str(path)!r}: {reason.strerror}") from None
-    os.close(handle)
-    try:
-        yield Path(temporary)
+        yield temporary
         if path.is_dir():
             raise ParameterError(f"{name}: cannot write {str(path)!r}: it is a directory")
         os.chmod(temporary, 0o666 & ~_umask())
@@ -103,7 +99,24 @@ def whole_file(path: str | os.PathLike[str], name: str) -> Iterator[Path]:
     except OSError as reason:
         raise ParameterError(f"{name}: cannot write {str(path)!r}: {reason.strerror}") from None
     finally:
-        Path(temporary).unlink(missing_ok=True)
+        temporary.unlink(missing_ok=True)
+
+
+def check_writable(path: str | os.PathLike[str], name: str) -> None:
+    """Raise the error that `whole_file` would raise, before the work is done."""
+    path = Path(path)
+    _temporary(path, name).unlink()
+    if path.is_dir():
+        raise ParameterError(f"{name}: cannot write {str(path)!r}: it is a directory")
+
+
+def _temporary(path, name):
+    try:
+        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name[:100]}.", suffix=path.suffix)
+    except OSError as reason:
+        raise ParameterError(f"{name}: cannot write {str(path)!r}: {reason.strerror}") from None
+    os.close(handle)
+    return Path(temporary)
 
 
 def _umask():

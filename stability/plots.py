@@ -35,7 +35,7 @@ NEUTRAL = {"value": "at zero growth", "phase_speed": "phase speed $c_r$"}
 
 
 def draw(result, path):
-    """Draw a result into the file `path`: a DispersionRelation, a list of Spectrum, Optima, a NeutralCurve,
+    """Draw a result into the file `path`: a DispersionRelation, a list of Spectrum, Optima, a NeutralCurve, a Map,
     Sensitivities, or a pair (name of the swept parameter, list of NeutralPoint)."""
     import matplotlib
     from matplotlib.figure import Figure
@@ -44,28 +44,37 @@ def draw(result, path):
         figure = Figure(figsize=(6.4, 2.8), layout="none" if _plain(result) else "constrained")
         if _plain(result):
             figure.subplots_adjust(left=0.14, right=0.98, bottom=0.18, top=0.86, wspace=0.45)
-        if isinstance(result, (list, Sensitivities)) or hasattr(result, "measurements"):
-            axis = figure.subplots()
+        if hasattr(result, "axes"):
+            from .mapplots import draw_map
+
+            draw_map(result, figure)
         else:
-            axes = figure.subplots(1, 2)
-        if isinstance(result, DispersionRelation):
-            _both(dispersion, result, axes, DISPERSION)
-        elif isinstance(result, NeutralCurve):
-            _both(neutral_curve, result, axes, NEUTRAL)
-        elif isinstance(result, list):
-            spectra(result, axis)
-        elif isinstance(result, Sensitivities):
-            sensitivities(result, axis)
-        elif hasattr(result, "measurements"):
-            _comparison(result, axis)
-        elif isinstance(result, Optima):
-            _both(optima, result, axes, OPTIMA)
-        elif isinstance(result[0], WellPosedness):
-            _well_posedness(*result, *axes)
-        else:
-            _neutral_points(*result, *axes)
+            _draw_panels(result, figure)
         figure.suptitle(_caption(result), fontsize=8, color=GREY)
         figure.savefig(path)
+
+
+def _draw_panels(result, figure):
+    if isinstance(result, (list, Sensitivities)) or hasattr(result, "measurements"):
+        axis = figure.subplots()
+    else:
+        axes = figure.subplots(1, 2)
+    if isinstance(result, DispersionRelation):
+        _both(dispersion, result, axes, DISPERSION)
+    elif isinstance(result, NeutralCurve):
+        _both(neutral_curve, result, axes, NEUTRAL)
+    elif isinstance(result, list):
+        spectra(result, axis)
+    elif isinstance(result, Sensitivities):
+        sensitivities(result, axis)
+    elif hasattr(result, "measurements"):
+        _comparison(result, axis)
+    elif isinstance(result, Optima):
+        _both(optima, result, axes, OPTIMA)
+    elif isinstance(result[0], WellPosedness):
+        _well_posedness(*result, *axes)
+    else:
+        _neutral_points(*result, *axes)
 
 
 def axes_or_new(axes: "Axes | None") -> "Axes":
@@ -93,6 +102,8 @@ def _caption(result):
         return f"{result.flow}, {result.mode} mode"
     if isinstance(result, NeutralCurve):
         return str(result.flow)
+    if hasattr(result, "axes"):
+        return result.title
     if isinstance(result, Sensitivities) or hasattr(result, "measurements"):
         return f"{result.flow}, k = {result.k:g}"
     if isinstance(result, list) or isinstance(result, tuple) and isinstance(result[0], WellPosedness):

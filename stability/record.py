@@ -23,6 +23,11 @@ class Record:
         raise NotImplementedError
 
     @property
+    def dimensions(self) -> tuple[str, ...]:
+        """Names of all dimensions of the columns: those of a map are several, each with a column of its own."""
+        return (self.dimension,)
+
+    @property
     def bounded(self) -> str:
         """What the column `error` bounds."""
         return "sigma"

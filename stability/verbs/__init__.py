@@ -1,5 +1,5 @@
 """The verbs of the command line, one module each with a function `add(verbs)`."""
 
-from . import compare, critical, dispersion, flows, kmax, neutral, sensitivity, spectrum, wellposed
+from . import compare, critical, dispersion, flows, kmax, map, neutral, sensitivity, spectrum, wellposed
 
-VERBS = (flows, spectrum, dispersion, kmax, neutral, critical, sensitivity, compare, wellposed)
+VERBS = (flows, spectrum, dispersion, kmax, neutral, critical, map, sensitivity, compare, wellposed)

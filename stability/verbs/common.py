@@ -74,13 +74,19 @@ def sweep_of(arguments, flow):
     """The swept parameter's name (or None) and the flows of the sweep."""
     if arguments.over is None:
         return None, [flow]
-    name, _, spec = arguments.over.partition("=")
+    name, values = swept_values(arguments.over, flow)
+    return name, [replace(flow, **{name: value}) for value in values]
+
+
+def swept_values(text, flow):
+    """The parameter and its values of NAME=SPEC."""
+    name, _, spec = text.partition("=")
     name = name.replace("-", "_")
     known = [item.name for item in fields(flow) if "options" not in item.metadata]
     if name not in known:
         raise ParameterError(f"--over: {flow.name} has no parameter {name!r}{_nearest(name, known)}; "
                              f"it has {', '.join(known)}")
-    return name, [replace(flow, **{name: value}) for value in parse_spec(spec, f"--over {name}", False).tolist()]
+    return name, parse_spec(spec, f"--over {name}", False).tolist()
 
 
 def options_of(arguments):
@@ -98,13 +104,16 @@ def integer(text, name, low, high):
     return value
 
 
-def report(arguments, flow, compute):
-    """Check where output goes, compute, write it; return the exit status."""
+def report(arguments, flow, compute, swept=()):
+    """Check where output goes, compute, write it; return the exit status.
+
+    The header leaves out the parameters that are `swept`.
+    """
     with ExitStack() as stack:
         out = stack.enter_context(whole_file(arguments.output, "-o")) if arguments.output else None
         plot = _plot_file(arguments, stack)
         rows, result, notes = compute()
-        header = header_of(flow, getattr(arguments, "method", "collocation"), notes)
+        header = header_of(flow, getattr(arguments, "method", "collocation"), notes, swept)
         if plot:
             from ..plots import draw  # matplotlib takes longer to import than most results to compute
 
@@ -115,7 +124,10 @@ def report(arguments, flow, compute):
                 print(f"stability: {note}", file=sys.stderr)
             if failed:
                 print(f"stability: {len(failed)} of {len(rows)} rows are not resolved: see status", file=sys.stderr)
-        write(render(arguments.form, header, rows), out)
+        if arguments.form == "netcdf":
+            result.to_netcdf(out)
+        else:
+            write(render(arguments.form, header, rows), out)
     return 3 if failed else 0
 
 
@@ -127,9 +139,13 @@ def progress(arguments, done, total):
 def _plot_file(arguments, stack):
     if not arguments.plot:
         return None
-    if not arguments.plot.endswith(_PLOTS):
-        raise ParameterError(f"--plot: the file must end in {', '.join(_PLOTS)} (got {arguments.plot!r})")
+    check_plot(arguments.plot)
     return stack.enter_context(whole_file(arguments.plot, "--plot"))
+
+
+def check_plot(path):
+    if not path.endswith(_PLOTS):
+        raise ParameterError(f"--plot: the file must end in {', '.join(_PLOTS)} (got {path!r})")
 
 
 def _nearest(name, known):

@@ -8,8 +8,8 @@ def add(verbs):
              "stability critical poiseuille --vary Re", vary_option, long_wave_option)
 
 
-def vary_option(verb):
-    verb.add_argument("--vary", required=True, metavar="NAME",
+def vary_option(verb, required=True):
+    verb.add_argument("--vary", required=required, metavar="NAME",
                       help="parameter to solve for; the search starts from its value")
 
 

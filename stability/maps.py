@@ -1,0 +1,427 @@
+"""Maps: one quantity over a grid of one to three parameters, computed in pieces on any executor.
+
+A piece is a fixed part of the grid, a stretch of its innermost parameter, so that results depend neither on the
+number of workers nor on the order in which they finish, nor on interruptions.
+"""
+
+from concurrent.futures import BrokenExecutor, as_completed
+from contextlib import closing, nullcontext
+from dataclasses import dataclass, field, fields, replace
+from itertools import islice, product
+from math import prod
+from typing import Any
+
+import numpy as np
+
+from .errors import ParameterError, StabilityError, WorkersLost
+from .flows.base import check_parameter
+from .journal import Journal
+from .mode import DEGREES, TOLERANCE, check_wavenumbers
+from .neutral import check_parameter_name, critical_sweep
+from .optimum import k_max_sweep
+from .output import header_of
+from .pool import processes
+from .record import Record
+from .relation import dispersion
+from .wellposed import flag_outgrown, outgrown
+
+QUANTITIES = ("k_max", "growth_rate", "neutral")
+
+_COLUMNS = {
+    "k_max": ("k_max", "growth_rate", "phase_speed", "error", "growth_error", "maxima", "second_k_max",
+              "second_growth_rate", "status"),
+    "growth_rate": ("growth_rate", "phase_speed", "error", "degree", "status"),
+    "neutral": ("k", "phase_speed", "error", "k_error", "status"),  # headed by the parameter that is solved for
+}
+_PIECE = {"k_max": 4, "growth_rate": 1, "neutral": 16}  # flows of a piece, neighbours along the innermost parameter
+_MOST_AXES = 3
+_MOST_POINTS = 1_000_000
+_ROUNDS = 3  # in a row without a finished piece: then the executor is given up
+
+
+@dataclass(frozen=True)
+class Request:
+    """What a map is asked for: `over` {parameter: values}, the first outermost; k belongs to "growth_rate", `vary` to
+    "neutral". Raises ParameterError where that makes no map."""
+
+    flow: Any
+    over: dict
+    quantity: str
+    k: Any = None
+    vary: str | None = None
+    tolerance: float = TOLERANCE
+    max_degree: int = DEGREES[-1]
+
+    def __post_init__(self):
+        if self.quantity not in QUANTITIES:
+            raise ParameterError(f"quantity must be one of {', '.join(QUANTITIES)} (got {self.quantity!r})")
+        if not 1 <= len(self.over) <= _MOST_AXES:
+            raise ParameterError(f"over: a map has one to {_MOST_AXES} swept parameters (got {len(self.over)})")
+        object.__setattr__(self, "over", {name: self._values(name, values) for name, values in self.over.items()})
+        self._check_quantity()
+        if self.k is not None:
+            object.__setattr__(self, "k", tuple(check_wavenumbers(self.k).tolist()))
+        if not 1 <= self.size <= _MOST_POINTS:
+            raise ParameterError(f"over: a map has 1 to {_MOST_POINTS} points (got {self.size}): coarsen or split it")
+
+    def _values(self, name, values):
+        check_parameter_name(self.flow, name)
+        (item,) = (item for item in fields(self.flow) if item.name == name)
+        return tuple(check_parameter(self.flow.name, item, value) for value in np.ravel(values).tolist())
+
+    def _check_quantity(self):
+        for name, owner, meaning in (("k", "growth_rate", "wavenumbers"),
+                                     ("vary", "neutral", "a parameter to solve for")):
+            given = getattr(self, name) is not None
+            if given != (self.quantity == owner):
+                raise ParameterError(f"{name}: " + (f"quantity {self.quantity} takes none, only {owner} does" if given
+                                                    else f"quantity {owner} needs {meaning}"))
+        if self.vary is not None:
+            check_parameter_name(self.flow, self.vary)
+        if self.vary in self.over:
+            raise ParameterError(f"vary: {self.vary} is the parameter to solve for; sweep another one")
+        if self.quantity == "k_max" and not self.flow.has_surface_mode():
+            raise ParameterError(f"quantity k_max: {self.flow.name} has no slow surface mode; ask for growth_rate at "
+                                 "given wavenumbers k, or for neutral")
+
+    @property
+    def axes(self):
+        """{name: values (count,)}, outermost first; k is the innermost."""
+        axes = self.over if self.k is None else {**self.over, "k": self.k}
+        return {name: np.array(values) for name, values in axes.items()}
+
+    @property
+    def shape(self):
+        return tuple(len(values) for values in self.axes.values())
+
+    @property
+    def size(self):
+        """How many points there are."""
+        return prod(self.shape)
+
+    @property
+    def results(self):
+        """Names of the results at each point; the last is the status."""
+        return (() if self.vary is None else (self.vary,)) + _COLUMNS[self.quantity]
+
+    def pieces(self):
+        """The pieces of the grid, in its order."""
+        *outer, (name, inner) = self.over.items()
+        lines = product(*(values for _, values in outer))
+        stretches = [inner[first: first + _PIECE[self.quantity]]
+                     for first in range(0, len(inner), _PIECE[self.quantity])]
+        names = (*(outer_name for outer_name, _ in outer), name)
+        return tuple(Piece(index, self.quantity, tuple(self._at(names, (*line, value)) for value in stretch), self.k,
+                           self.vary, self.tolerance, self.max_degree)
+                     for index, (line, stretch) in enumerate(product(lines, stretches)))
+
+    def _at(self, names, values):
+        """The flow at a point, or the reason (a string) why there is none."""
+        try:
+            return replace(self.flow, **dict(zip(names, values, strict=True)))
+        except ParameterError as reason:
+            return str(reason)
+
+    def description(self):
+        """All that the results depend on, as plain values."""
+        from . import __version__
+
+        fixed = {item.name: getattr(self.flow, item.name) for item in fields(self.flow) if item.name not in self.over}
+        return {"version": __version__, "flow": self.flow.name, "parameters": fixed,
+                "over": [[name, list(values)] for name, values in self.over.items()], "quantity": self.quantity,
+                "k": self.k and list(self.k), "vary": self.vary, "tolerance": float(self.tolerance),
+                "max_degree": self.max_degree}
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Neighbouring points that are computed together: a flow, or why there is none (a string), at each."""
+
+    index: int
+    quantity: str
+    flows: tuple
+    k: tuple | None
+    vary: str | None
+    tolerance: float
+    max_degree: int
+
+    @property
+    def points(self):
+        return len(self.flows) * len(self.k or (None,))
+
+
+@dataclass(frozen=True, repr=False)
+class Map(Record):
+    """Results of a `Request` at every point of its grid; `map[name]` is a column shaped by the axes, or an axis.
+
+    Columns hold nan where there is no number; `status` then says why. `table` (points, columns) holds None there.
+    """
+
+    request: Request
+    table: tuple = field(repr=False)
+
+    @property
+    def flow(self):
+        return self.request.flow
+
+    @property
+    def quantity(self):
+        return self.request.quantity
+
+    @property
+    def axes(self):
+        """{name: values (count,)}, outermost first."""
+        return self.request.axes
+
+    @property
+    def results(self):
+        """Names of the results at each point; the last is the status."""
+        return self.request.results
+
+    @property
+    def dimension(self):
+        """The outermost axis."""
+        return self.dimensions[0]
+
+    @property
+    def dimensions(self):
+        return tuple(self.axes)
+
+    @property
+    def bounded(self):
+        return {"k_max": "k_max", "growth_rate": "sigma", "neutral": self.request.vary}[self.quantity]
+
+    @property
+    def title(self):
+        """The flow and its fixed parameters."""
+        fixed = {name: value for name, value in self.request.description()["parameters"].items()
+                 if name != self.request.vary}
+        return f"{self.flow.name}: {', '.join(f'{name} {_short(value)}' for name, value in fixed.items())}"
+
+    def __getitem__(self, name):
+        if name in self.axes:
+            return self.axes[name]
+        if name not in self.results:
+            raise KeyError(f"{name}; this map has {', '.join((*self.axes, *self.results))}")
+        values = [row[self.results.index(name)] for row in self.table]
+        return np.array(values, dtype=str if name == "status" else float).reshape(self.request.shape)
+
+    @property
+    def resolved(self):
+        """Which points are resolved, in the shape of the axes."""
+        return np.char.startswith(self["status"], "resolved")
+
+    def rows(self):
+        """One dict for each point, the last axis fastest."""
+        axes = self.axes
+        return [dict(zip((*axes, *self.results), (*point, *results), strict=True))
+                for point, results in zip(product(*(values.tolist() for values in axes.values())), self.table,
+                                          strict=True)]
+
+    def columns(self):
+        """Return axes (count,) and results, shaped by the axes; nan where there is no number."""
+        return {**self.axes, **{name: self[name] for name in self.results}}
+
+    def about(self):
+        return {"quantity": self.quantity, "over": ", ".join(self.axes)}
+
+    def header(self):
+        return header_of(self.flow, self.method, self.notes(), (*self.request.over, self.request.vary))
+
+    def plot(self, ax=None, quantity=None):
+        """Draw a result (the first, by default) over one or two axes into the matplotlib Axes `ax`, or a new one."""
+        from . import mapplots, plots
+
+        return mapplots.panel(self, plots.axes_or_new(ax), quantity or self.results[0])
+
+
+def _short(value):
+    return f"{value:g}" if isinstance(value, float) else value
+
+
+def parameter_map(flow, over, quantity=None, *, k=None, vary=None, executor=None, workers=1, journal=None, report=None,
+                  tolerance=TOLERANCE, max_degree=DEGREES[-1]):
+    """Return the `Map` of a quantity over one to three parameters, `over` = {name: values}.
+
+    "k_max" (the default) is the fastest growing wavenumber of the surface mode with its growth rate, "growth_rate"
+    (the default with wavenumbers `k`, the innermost axis then) that of the mode that `dispersion` follows, "neutral"
+    the critical value of `vary`, sought from the value that the flow has. What fails says so in its status.
+
+    Work is done in this process, in `workers` processes of our own (a script then needs `if __name__ ==
+    "__main__"`), or on any `concurrent.futures.Executor`, where pieces that fail are submitted again. `journal` names
+    a file that keeps finished pieces: the same call resumes from it; delete it once the map is stored.
+    `report(done, total)` is called as points are done.
+
+    >>> from stability import flows
+    >>> found = parameter_map(flows.Dune(), {"shields": [1.5, 2.0], "Re": [10.0, 100.0]})
+    >>> f"{found['k_max'][1, 0]:.7f}"
+    '0.8492020'
+    """
+    quantity = quantity or ("k_max" if k is None else "growth_rate")
+    return carry_out(Request(flow, over, quantity, k, vary, tolerance, max_degree), executor=executor, workers=workers,
+                     journal=journal, report=report)
+
+
+def carry_out(request, *, executor=None, workers=1, journal=None, report=None):
+    """Return the `Map` of a request; see `parameter_map`."""
+    pieces, report = request.pieces(), report or (lambda done, total: None)
+    with Journal(journal, request.description()) if journal else nullcontext() as kept:
+        done = dict(kept.done) if kept else {}
+        left = [piece for piece in pieces if piece.index not in done]
+        count = request.size - sum(piece.points for piece in left)
+        report(count, request.size)
+        with closing(_compute_all(left, executor, workers)) as finished:
+            for piece, rows in finished:
+                if kept:
+                    kept.add(piece.index, rows)
+                done[piece.index] = rows
+                count += piece.points
+                report(count, request.size)
+    return Map(request, tuple(tuple(row) for piece in pieces for row in done[piece.index]))
+
+
+def _compute_all(pieces, executor, workers):
+    """Yield (piece, rows) as pieces finish."""
+    workers = min(workers, len(pieces))
+    if executor is not None:
+        return _in_rounds(pieces, lambda: _Lent(executor))
+    if workers > 1:
+        return _in_rounds(pieces, lambda: processes(workers))
+    return ((piece, compute(piece)) for piece in pieces)
+
+
+class _Lent:
+    """Somebody else's executor: left running at the end, without what it has not begun of our work."""
+
+    def __init__(self, executor):
+        self._executor, self._futures = executor, []
+
+    def submit(self, *call):
+        self._futures.append(self._executor.submit(*call))
+        return self._futures[-1]
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *failure):
+        for future in self._futures:
+            future.cancel()
+
+
+def _in_rounds(pieces, open_executor):
+    """Compute the pieces; those lost with their worker are computed again in the next round, on a new executor."""
+    left, fruitless, attempt = {piece.index: piece for piece in pieces}, 0, 0
+    while left:
+        before, failure = len(left), None
+        with open_executor() as executor:
+            for piece, rows, reason in _round(executor, tuple(left.values()), attempt):
+                if reason is None:
+                    del left[piece.index]
+                    yield piece, rows
+                else:
+                    failure = reason
+        attempt += 1
+        fruitless = fruitless + 1 if len(left) == before else 0
+        if fruitless == _ROUNDS:
+            raise _given_up(failure)
+
+
+def _round(executor, pieces, attempt):
+    """Submit the pieces; yield (piece, rows, None) or (piece, None, exception) as they end."""
+    futures = {}
+    try:
+        for piece in pieces:
+            futures[executor.submit(compute, piece, attempt)] = piece
+    except BrokenExecutor as reason:  # while it was being filled
+        yield None, None, reason
+    for future in as_completed(futures):
+        try:
+            yield futures[future], future.result(), None
+        except Exception as reason:  # whatever an engine raises for a lost worker
+            yield futures[future], None, reason
+
+
+def _given_up(failure):
+    if isinstance(failure, BrokenExecutor):
+        return WorkersLost(f"worker processes ended {_ROUNDS} times before they finished anything: out of memory? "
+                           "Try fewer workers")
+    return failure
+
+
+def compute(piece, attempt=0):
+    """Return the rows of a piece: a list with the values of the columns for each point.
+
+    `attempt` does nothing: it tells an engine that remembers calls by their arguments that this is another one.
+    """
+    return [list(row) for row in _ROWS[piece.quantity](piece)]
+
+
+def _k_max_rows(piece):
+    def sweep(flows):
+        return flag_outgrown(k_max_sweep(flows, tolerance=piece.tolerance, max_degree=piece.max_degree))
+
+    for found in _each(sweep, piece.flows):
+        yield _nothing(piece, found) if isinstance(found, str) else _optimum_row(found)
+
+
+def _optimum_row(optimum):
+    if not optimum.maxima:
+        return *[None] * 5, 0, None, None, optimum.status
+    second = optimum.maxima[1] if len(optimum.maxima) > 1 else None
+    return (optimum.k_max, optimum.growth_rate, optimum.phase_speed, optimum.error, optimum.best.mode.error,
+            len(optimum.maxima), second and second.k, second and second.growth_rate, optimum.status)
+
+
+def _growth_rate_rows(piece):
+    def sweep(flows):
+        for flow in flows:
+            yield dispersion(flow, piece.k, strict=False, tolerance=piece.tolerance, max_degree=piece.max_degree)
+
+    for found in _each(sweep, piece.flows):
+        if isinstance(found, str):
+            yield from [_nothing(piece, found)] * len(piece.k)
+        else:
+            yield from _relation_rows(piece, found)
+
+
+def _relation_rows(piece, relation):
+    modes = {mode.k: mode for mode in relation.modes}
+    faster = outgrown(relation)
+    for k in piece.k:
+        if k not in modes:
+            yield _nothing(piece, f"lost: {relation.lost[k]}")
+            continue
+        mode = modes[k]
+        status = f"{mode.status}; outgrown" if faster and k >= faster.k else mode.status
+        yield mode.growth_rate, mode.phase_speed, mode.error, mode.degree, status
+
+
+def _neutral_rows(piece):
+    def sweep(flows):
+        return critical_sweep(flows, piece.vary, tolerance=piece.tolerance, max_degree=piece.max_degree)
+
+    for found in _each(sweep, piece.flows):
+        if isinstance(found, str):
+            yield None, *_nothing(piece, found)
+        else:
+            yield found.value, found.k, found.phase_speed, found.error, found.k_error, found.status
+
+
+def _nothing(piece, why):
+    return *[None] * (len(_COLUMNS[piece.quantity]) - 1), why
+
+
+def _each(sweep, flows):
+    """What `sweep(flows)` yields for each flow, in order, or a string that says why there is nothing."""
+    found = [flow if isinstance(flow, str) else None for flow in flows]
+    left = [index for index, flow in enumerate(flows) if not isinstance(flow, str)]
+    while left:
+        try:
+            for result in islice(sweep([flows[index] for index in left]), len(left)):
+                found[left.pop(0)] = result
+        except StabilityError as reason:
+            found[left.pop(0)] = str(reason)
+    return found
+
+
+_ROWS = {"k_max": _k_max_rows, "growth_rate": _growth_rate_rows, "neutral": _neutral_rows}

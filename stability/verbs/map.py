@@ -1,0 +1,96 @@
+"""stability map: a quantity over a grid of one to three parameters, on all cores, resumed where it was stopped."""
+
+import sys
+from pathlib import Path
+
+from ..errors import ParameterError
+from ..output import check_writable
+from ..specs import parse_spec
+from .common import SPEC, add_verb, check_plot, flow_of, integer, options_of, report, swept_values
+from .critical import vary_option
+from .methods import INTERRUPTED_STATUS
+from .progress import Bar
+
+_FORMS = {".csv": "csv", ".json": "json", ".nc": "netcdf"}
+_MOST_WORKERS = 1000
+_DRAWN_AXES = 2
+
+
+def add(verbs):
+    add_verb(verbs, "map", _run, "a quantity over one to three parameters, on all cores; continues after Ctrl-C",
+             "stability map dune --over shields=1.1:4:20 --over Re=0.1:1e4:20 -o dunes.csv --plot dunes.png", _options)
+
+
+def _options(verb):
+    verb.add_argument("--over", action="append", default=[], metavar="NAME=SPEC",
+                      help=f"parameter to sweep and its values, once to three times, the innermost last: {SPEC}")
+    verb.add_argument("--quantity", metavar="Q", help="k_max (the default), growth_rate (the default with --k), or "
+                      "neutral (with --vary)")
+    verb.add_argument("--k", metavar="SPEC", help="wavenumbers: growth rates over them too")
+    vary_option(verb, required=False)
+    verb.add_argument("--workers", metavar="N", help="processes; default: as many as there are cores to use")
+
+
+def _run(arguments):
+    from ..maps import carry_out
+    from ..pool import cores
+
+    request = _request(arguments)
+    workers = cores() if arguments.workers is None else integer(arguments.workers, "--workers", 1, _MOST_WORKERS)
+    arguments.form = _form(arguments)
+    _check_files(arguments, request)
+    journal = Path(f"{arguments.output}.partial")
+    bar = Bar(arguments.quiet)
+    try:
+        found = carry_out(request, workers=workers, journal=journal, report=bar)
+        status = report(arguments, request.flow, lambda: (found.rows(), found, []), (*request.over, request.vary))
+    except KeyboardInterrupt:
+        bar.clear()
+        print(f"stability: interrupted: {bar.done} of {request.size} points are kept in {str(journal)!r}; "
+              "the same command resumes", file=sys.stderr)
+        return INTERRUPTED_STATUS
+    finally:
+        bar.clear()
+    journal.unlink(missing_ok=True)
+    return status
+
+
+def _request(arguments):
+    from ..maps import Request
+
+    flow, options = flow_of(arguments), options_of(arguments)
+    if not arguments.over:
+        raise ParameterError("--over: give at least one parameter to sweep, NAME=SPEC")
+    over = {}
+    for text in arguments.over:
+        name, values = swept_values(text, flow)
+        if name in over:
+            raise ParameterError(f"--over: {name} is swept twice")
+        over[name] = values
+    k = None if arguments.k is None else parse_spec(arguments.k, "--k")
+    vary = arguments.vary and arguments.vary.replace("-", "_")
+    quantity = arguments.quantity or ("k_max" if k is None else "growth_rate")
+    return Request(flow, over, quantity, k, vary, **options)
+
+
+def _form(arguments):
+    """The form asked for, or the one that the ending of the file stands for."""
+    if arguments.output is None:
+        raise ParameterError("-o FILE is needed, .csv, .json or .nc: a map is kept beside it while it is computed")
+    if arguments.form != "table":
+        return arguments.form
+    ending = Path(arguments.output).suffix
+    if ending not in _FORMS:
+        raise ParameterError(f"-o: the file must end in {', '.join(_FORMS)}, or add --csv or --json "
+                             f"(got {arguments.output!r})")
+    return _FORMS[ending]
+
+
+def _check_files(arguments, request):
+    """Before the work, not after it: can its results be written?"""
+    check_writable(arguments.output, "-o")
+    if arguments.plot:
+        check_plot(arguments.plot)
+        check_writable(arguments.plot, "--plot")
+        if len(request.axes) > _DRAWN_AXES:
+            raise ParameterError(f"--plot: draws maps over one or two axes (this one has {', '.join(request.axes)})")

@@ -1,0 +1,415 @@
+"""Maps: point by point what the other verbs say, and the same file however often the work is interrupted."""
+
+import csv
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import active_children, get_context
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from stability import ParameterError, dispersion, flows, k_max, maps
+from stability.cli import main
+from stability.errors import WorkersLost
+from stability.journal import Journal
+from stability.mapplots import branch_changes
+from stability.maps import Request, compute, parameter_map
+from stability.neutral import critical
+
+SMALL = {"shields": [1.5, 3.0], "Re": [0.1, 10.0, 1e3]}
+WIDE = {**SMALL, "Re": [0.1, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1e3]}
+COMMAND = ["map", "dune", "--over", "shields=1.5:3:4", "--over", "Re=1:1e3:16"]
+
+
+def run(capsys, *words):
+    status = main(list(words))
+    return status, *capsys.readouterr()
+
+
+@pytest.fixture(scope="module")
+def small():
+    return parameter_map(flows.Dune(), SMALL)
+
+
+@pytest.fixture(scope="module")
+def wide():
+    return parameter_map(flows.Dune(), WIDE)
+
+
+@pytest.fixture(scope="module")
+def uninterrupted(tmp_path_factory):
+    target = tmp_path_factory.mktemp("map") / "whole.csv"
+    assert main([*COMMAND, "--workers", "1", "-o", str(target)]) == 0
+    return target.read_bytes()
+
+
+def test_every_point_is_that_of_k_max(small):
+    for row, (shields, Re) in zip(small.rows(), ((s, r) for s in SMALL["shields"] for r in SMALL["Re"]), strict=True):
+        best = k_max(flows.Dune(shields=shields, Re=Re))
+        second = best.maxima[1] if len(best.maxima) > 1 else None
+        assert row == {
+            "shields": shields, "Re": Re, "k_max": best.k_max, "growth_rate": best.growth_rate,
+            "phase_speed": best.phase_speed, "error": best.error, "growth_error": best.best.mode.error,
+            "maxima": len(best.maxima), "second_k_max": second and second.k,
+            "second_growth_rate": second and second.growth_rate, "status": "resolved"}
+    assert small["k_max"].shape == (2, 3)
+    assert small["k_max"][1, 2] == k_max(flows.Dune(shields=3.0, Re=1e3)).k_max
+    assert small["maxima"].tolist() == [[1, 1, 1], [2, 1, 1]]
+
+
+def test_growth_rates_along_k_are_those_of_dispersion():
+    k = [0.1, 1.0, 5.0]
+    found = parameter_map(flows.Dune(), {"shields": [1.5, 3.0]}, k=k)
+    assert list(found.axes) == ["shields", "k"]
+    for i, shields in enumerate((1.5, 3.0)):
+        relation = dispersion(flows.Dune(shields=shields), k)
+        assert found["growth_rate"][i].tolist() == relation.growth_rate.tolist()
+        assert found["error"][i].tolist() == relation.error.tolist()
+    assert found.resolved.all()
+
+
+def test_the_leading_mode_is_mapped_where_there_is_no_surface_mode():
+    found = parameter_map(flows.Poiseuille(), {"Re": [5e3, 1e4]}, k=[1.0])
+    assert np.sign(found["growth_rate"][:, 0]).tolist() == [-1, 1]
+
+
+def test_neutral_values_are_those_of_critical():
+    found = parameter_map(flows.Film(), {"slope_deg": [30.0, 45.0]}, "neutral", vary="Re")
+    assert found["Re"][1] == pytest.approx(1.25, abs=1e-12)
+    assert found["Re"][0] == pytest.approx(critical(flows.Film(slope_deg=30.0), "Re").value, abs=1e-11)
+    assert found["k"].tolist() == [0, 0]
+
+
+def test_outgrown_and_inadmissible_points_say_so():
+    found = parameter_map(flows.Dune(mu1=0.7), {"shields": [1.02, 2.0], "Re": [3e3]})
+    assert found["status"].tolist() == [["resolved; outgrown"], ["resolved"]]
+    found = parameter_map(flows.RollWave(), {"slope_deg": [15.0, 25.0], "Fr2": [5.0]})
+    assert "slope_deg must lie between" in found["status"][0, 0]
+    assert np.isnan(found["k_max"][0, 0])
+    assert found.rows()[0]["k_max"] is None
+    assert found.resolved.tolist() == [[False], [True]]
+
+
+def test_the_jump_between_branches_is_found():
+    found = parameter_map(flows.Dune(), {"shields": [3.0, 1.5, 2.0], "Re": [0.1, 10.0]})
+    along_shields, along_Re = branch_changes(found)  # shields sorted
+    assert along_shields.tolist() == [[False, False], [True, False]]
+    assert not along_Re[:2].any()
+
+
+@pytest.mark.parametrize(("first", "second", "jumps"), [
+    ((0.1, 1.0), (None, 0.11), True), ((0.1, 1.0), (0.9, None), True), ((0.1, 0.12), (1.0, 1.1), False),
+    ((0.1, 0.12), (None, None), False), ((0.1, None), (1.0, None), False),
+])
+def test_a_jump_is_where_a_maximum_continues_the_second_one(first, second, jumps):
+    """Either neighbour may have two."""
+    rows = tuple((k, 1.0, 1.0, 0.0, 0.0, 2, other, 0.5, "resolved") for k, other in zip(first, second, strict=True))
+    (change,) = branch_changes(maps.Map(Request(flows.Dune(), {"Re": [1.0, 2.0]}, "k_max"), rows))
+    assert change.tolist() == [jumps]
+
+
+def test_three_axes_in_order():
+    over = {"mu1": [0.3, 0.5], "shields": [1.5, 2.0], "b": [0.5, 1.0, 2.0, 2.5, 3.0]}  # more than a piece
+    found = parameter_map(flows.Dune(), over)
+    assert found["k_max"].shape == (2, 2, 5)
+    assert found["k_max"][1, 0, 4] == k_max(flows.Dune(mu1=0.5, shields=1.5, b=3.0)).k_max
+
+
+def test_any_executor_gives_the_same(small):
+    with ThreadPoolExecutor(2) as executor:
+        assert parameter_map(flows.Dune(), SMALL, executor=executor).table == small.table
+    assert parameter_map(flows.Dune(), SMALL, workers=2).table == small.table
+    assert active_children() == []
+
+
+def _failing(piece, attempt):
+    """As a worker that is lost the first time."""
+    if attempt == 0 and piece.index == 1:
+        raise RuntimeError("worker lost")
+    return compute(piece)
+
+
+def _always_failing(piece, attempt):
+    raise RuntimeError(f"worker lost {attempt}")
+
+
+def test_pieces_that_fail_are_submitted_again_a_few_times(small, monkeypatch):
+    with ThreadPoolExecutor(2) as executor:
+        monkeypatch.setattr(maps, "compute", _failing)
+        assert parameter_map(flows.Dune(), SMALL, executor=executor).table == small.table
+        monkeypatch.setattr(maps, "compute", _always_failing)
+        with pytest.raises(RuntimeError, match="worker lost 2"):
+            parameter_map(flows.Dune(), SMALL, executor=executor)
+
+
+def test_a_killed_worker_of_our_own_loses_nothing(wide):
+    killed = []
+
+    def kill_one(done, total):
+        if done and not killed:
+            killed.append(active_children()[0].pid)
+            os.kill(killed[0], signal.SIGKILL)
+
+    assert parameter_map(flows.Dune(), WIDE, workers=2, report=kill_one).table == wide.table
+    assert killed
+
+
+def _dying_pool():
+    return ProcessPoolExecutor(1, get_context("spawn"), os._exit, (1,))
+
+
+def test_workers_that_keep_dying_are_given_up(monkeypatch):
+    monkeypatch.setattr(maps, "processes", lambda workers: _dying_pool())
+    with pytest.raises(WorkersLost, match="ended 3 times"):
+        parameter_map(flows.Dune(), SMALL, workers=2)
+
+
+def test_a_broken_executor_of_somebody_else_is_reported():
+    executor = _dying_pool()
+    with pytest.raises(BrokenProcessPool):
+        executor.submit(int).result()
+    with pytest.raises(WorkersLost):
+        parameter_map(flows.Dune(), SMALL, executor=executor)
+
+
+def test_a_dask_worker_killed_on_the_way_loses_nothing(wide):
+    distributed = pytest.importorskip("distributed")
+    cluster = distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50)
+    with cluster, distributed.Client(cluster) as client:
+        killed = []
+
+        def kill_one(done, total):
+            if done and not killed:
+                killed.extend(client.run(os.getpid).values())
+                os.kill(killed[0], signal.SIGKILL)
+
+        found = parameter_map(flows.Dune(), WIDE, executor=client.get_executor(), report=kill_one)
+    assert killed
+    assert found.table == wide.table
+
+
+def start(target, *more, **options):
+    command = [sys.executable, "-m", "stability", *COMMAND, "-o", str(target), *more]
+    return subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True, **options)
+
+
+def stop(process, partial, kill, pieces=2):
+    """Send a signal once some pieces are kept; return what was said and the pieces."""
+    limit = time.monotonic() + 60
+    while not partial.exists() or partial.read_bytes().count(b"\n") < pieces + 1:
+        assert process.poll() is None
+        assert time.monotonic() < limit
+        time.sleep(0.01)
+    kill()
+    err = process.communicate(timeout=20)[1]
+    return err, partial.read_bytes().count(b"\n") - 1
+
+
+def test_ctrl_c_and_kill_lose_nothing(tmp_path, uninterrupted):
+    """Once by Ctrl-C, which reaches the workers too, once by kill -9: in the end the file of one run."""
+    target, partial = tmp_path / "a b é.csv", tmp_path / "a b é.csv.partial"
+    process = start(target, "--workers", "2")
+    err, pieces = stop(process, partial, lambda: os.killpg(process.pid, signal.SIGINT))
+    assert process.returncode == 130
+    assert err == (f"stability: interrupted: {4 * pieces} of 64 points are kept in {str(partial)!r}; "
+                   "the same command resumes\n")
+    process = start(target, "--workers", "2")
+    _, more = stop(process, partial, lambda: os.kill(process.pid, signal.SIGKILL), pieces + 1)
+    assert more > pieces
+    _wait_until_nobody_is_left(process.pid)
+    assert not target.exists()
+    partial.write_bytes(partial.read_bytes() + b'[15, [[1.5, 2')  # torn by the kill
+    process = start(target, "--workers", "1")
+    assert process.communicate(timeout=60)[1] == ""
+    assert target.read_bytes() == uninterrupted
+    assert [path.name for path in tmp_path.iterdir()] == [target.name]
+
+
+def _wait_until_nobody_is_left(group):
+    """Workers end with their parent, soon."""
+    limit = time.monotonic() + 5
+    while _running(group):
+        assert time.monotonic() < limit
+        time.sleep(0.05)
+
+
+def _running(group):
+    found = subprocess.run(["ps", "-eo", "pgid=,stat=,args="], capture_output=True, text=True, check=True).stdout
+    lines = [line.split(None, 2) for line in found.splitlines()]
+    return [line for line in lines if line[0] == str(group) and not line[1].startswith("Z") and "spawn_main" in line[2]]
+
+
+def test_a_resumed_map_computes_only_what_is_missing(tmp_path, small, monkeypatch):
+    partial = tmp_path / "map.partial"
+    parameter_map(flows.Dune(), SMALL, journal=partial)
+    monkeypatch.setattr(maps, "compute", None)
+    assert parameter_map(flows.Dune(), SMALL, journal=partial).table == small.table
+
+
+def test_the_journal_of_another_request_is_refused(tmp_path, capsys):
+    target = tmp_path / "x.csv"
+    partial = tmp_path / "x.csv.partial"
+    parameter_map(flows.Dune(), {"Re": [1.0, 2.0]}, journal=partial)
+    before = partial.read_bytes()
+    status, out, err = run(capsys, "map", "dune", "--over", "Re=1,3", "--mu1", "0.5", "-o", str(target))
+    assert (status, out) == (2, "")
+    assert err == (f"stability: {str(partial)!r} keeps the unfinished map of another request (differs in parameters, "
+                   "over): repeat that one, give another file, or delete it\n")
+    assert partial.read_bytes() == before
+    partial.write_text("my own notes\n")
+    assert run(capsys, "map", "dune", "--over", "Re=1,3", "-o", str(target))[0] == 2
+    assert partial.read_text() == "my own notes\n"
+
+
+def test_a_journal_torn_anywhere_goes_on_from_its_last_whole_line(tmp_path):
+    path, request = tmp_path / "j", {"flow": "dune"}
+    with Journal(path, request) as journal:
+        for index in range(2):
+            journal.add(index, [[1.5, None, "resolved"]])
+    whole = path.read_bytes()
+    for length in range(len(whole) + 1):
+        path.write_bytes(whole[:length])
+        with Journal(path, request) as journal:
+            for index in {0, 1} - set(journal.done):
+                journal.add(index, [[1.5, None, "resolved"]])
+        assert path.read_bytes() == whole
+
+
+def test_two_runs_do_not_share_a_journal(tmp_path):
+    request = Request(flows.Dune(), {"Re": [1.0]}, "k_max").description()
+    with Journal(tmp_path / "j", request), pytest.raises(ParameterError, match="in use"):
+        Journal(tmp_path / "j", request)
+
+
+def test_a_full_disk_keeps_what_is_done(tmp_path):
+    target, partial = tmp_path / "full.csv", tmp_path / "full.csv.partial"
+    limit = 3000  # bytes of any file
+
+    def little_room():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+    process = start(target, "--workers", "1", preexec_fn=little_room)
+    err = process.communicate(timeout=60)[1]
+    assert process.returncode == 2
+    assert err == (f"stability: cannot write {str(partial)!r}: File too large; what is done is kept, the same command "
+                   "resumes\n")
+    lines = partial.read_bytes().splitlines(keepends=True)
+    assert all(json.loads(line) and line.endswith(b"\n") for line in lines)
+    assert len(lines) > 1
+
+
+def test_forms_by_ending_and_what_exists_is_replaced(tmp_path, capsys):
+    from scipy.io import netcdf_file
+
+    words = ("map", "dune", "--over", "shields=1.5,3", "--over", "Re=0.1,10", "--workers", "1", "-o")
+    for ending in ("csv", "json", "nc"):
+        target = tmp_path / f"map.{ending}"
+        target.write_text("old")
+        assert run(capsys, *words, str(target)) == (0, "", "")
+    rows = json.loads((tmp_path / "map.json").read_text())["rows"]
+    lines = [line for line in (tmp_path / "map.csv").read_text().splitlines() if not line.startswith("#")]
+    assert [float(row["k_max"]) for row in csv.DictReader(lines)] == [row["k_max"] for row in rows]
+    with netcdf_file(tmp_path / "map.nc", mmap=False) as file:
+        assert file.variables["k_max"][:].ravel().tolist() == [row["k_max"] for row in rows]
+        assert file.variables["status"].dimensions == ("shields", "Re", "status_length")
+        assert file.variables["status"][:].tobytes() == b"resolved" * 4
+        assert file.variables["shields"].dimensions == ("shields",)
+        assert (file.flow, file.mu1, hasattr(file, "Re")) == (b"dune", 0.4, False)
+    assert len(list(tmp_path.iterdir())) == 3
+
+
+def test_the_record_prints_writes_and_draws_itself(tmp_path, small, capsys):
+    assert repr(small).startswith("Map of Dune(shields=2.0")
+    assert "quantity k_max, over shields, Re: 6 of 6 resolved\n" in repr(small)
+    words = "map", "dune", "--over", "shields=1.5,3", "--over", "Re=0.1,10,1e3", "-o"
+    for ending, write in (("csv", small.to_csv), ("json", small.to_json), ("nc", small.to_netcdf)):
+        ours, theirs = tmp_path / f"ours.{ending}", tmp_path / f"theirs.{ending}"
+        write(ours)
+        assert run(capsys, *words, str(theirs), "--workers", "1")[0] == 0
+        assert ours.read_bytes() == theirs.read_bytes()
+    axis = Figure().subplots()
+    assert small.plot(axis, "phase_speed") is axis
+    assert (axis.get_xlabel(), axis.get_ylabel()) == ("Re", "shields")
+
+
+@pytest.mark.parametrize("words", [("--over", "Re=0.1:100:3"), ("--over", "shields=1.02,2", "--over", "Re=10,3e3"),
+                                   ("--over", "shields=1.5:2:3", "--k", "0.1:3:4")])
+def test_maps_are_drawn(tmp_path, capsys, words):
+    picture = tmp_path / "map.svg"
+    status, _, err = run(capsys, "map", "dune", "--mu1", "0.7", *words, "--workers", "1", "-o",
+                         str(tmp_path / "map.csv"), "--plot", str(picture))
+    assert (status, err) == (0, "")
+    assert ("outgrown" in picture.read_text()) == ("outgrown" in (tmp_path / "map.csv").read_text())
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_progress_shows_the_time_left():
+    from stability.verbs.progress import bar
+
+    assert bar(25, 100, 75.0, 59) == "[" + "#" * 8 + "." * 25 + "] 25/100, 25 %, 1:15 left"
+    assert len(bar(25, 100, 3700.0, 59)) == 59
+    assert bar(0, 3600, None, 17) == "0/3600, 0 %"
+
+
+BAD = [
+    (("--over", "Rex=1:2:3"), "--over: dune has no parameter 'Rex' (did you mean 'Re'?)"),
+    (("--over", "Re"), "--over Re: not a finite number: ''"),
+    (("--over", "fluid=layer"), "--over: dune has no parameter 'fluid'"),
+    ((), "--over: give at least one parameter to sweep"),
+    (("--over", "Re=1,2", "--over", "Re=3,4"), "--over: Re is swept twice"),
+    (("--over", "Re=1", "--over", "b=1", "--over", "mu1=1", "--over", "depth=1"),
+     "a map has one to 3 swept parameters (got 4)"),
+    (("--over", "shields=0.5:2:3"), "shields must lie in (1, inf)"),
+    (("--over", "Re=1:2:2000", "--over", "b=1:2:2000"), "a map has 1 to 1000000 points (got 4000000)"),
+    (("--over", "Re=1,2", "--quantity", "speed"), "quantity must be one of k_max, growth_rate, neutral (got 'speed')"),
+    (("--over", "Re=1,2", "--quantity", "growth_rate"), "k: quantity growth_rate needs wavenumbers"),
+    (("--over", "Re=1,2", "--quantity", "k_max", "--k", "1"), "k: quantity k_max takes none, only growth_rate does"),
+    (("--over", "Re=1,2", "--quantity", "neutral"), "vary: quantity neutral needs a parameter to solve for"),
+    (("--over", "Re=1,2", "--vary", "b"), "vary: quantity k_max takes none, only neutral does"),
+    (("--over", "Re=1,2", "--quantity", "neutral", "--vary", "Re"), "vary: Re is the parameter to solve for"),
+    (("--over", "Re=1,2", "--quantity", "neutral", "--vary", "R"), "dune has no numeric parameter 'R'"),
+    (("--over", "Re=1,2", "--k", "0,1"), "--k: values must be positive (got 0)"),
+    (("--over", "Re=1,2", "--workers", "0"), "--workers: must be an integer from 1 to 1000 (got '0')"),
+    (("--over", "Re=1,2", "--workers", "-1"), "--workers"),
+    (("--over", "Re=1,2", "--plot", "x.gif"), "--plot: the file must end in .png, .pdf, .svg"),
+    (("--over", "Re=1,2", "--plot", "/nowhere/x.png"), "--plot: cannot write '/nowhere/x.png'"),
+    (("--over", "Re=1", "--over", "b=1", "--k", "1", "--plot", "x.png"), "--plot: draws maps over one or two axes"),
+]
+
+
+@pytest.mark.parametrize(("words", "line"), BAD, ids=[" ".join(words) or "nothing" for words, _ in BAD])
+def test_bad_input_gets_one_clear_line(tmp_path, monkeypatch, capsys, words, line):
+    monkeypatch.chdir(tmp_path)
+    status, out, err = run(capsys, "map", "dune", *words, "-o", "x.csv")
+    assert (status, out) == (2, "")
+    assert err.count("\n") == 1
+    assert line in err
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(("words", "line"), [
+    ((), "-o FILE is needed, .csv, .json or .nc"),
+    (("-o", "x.txt"), "-o: the file must end in .csv, .json, .nc, or add --csv or --json (got 'x.txt')"),
+    (("-o", "/nowhere/x.csv"), "-o: cannot write '/nowhere/x.csv'"),
+    (("-o", "folder.csv"), "-o: cannot write 'folder.csv': it is a directory"),
+])
+def test_bad_files_get_one_clear_line(tmp_path, monkeypatch, capsys, words, line):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder.csv").mkdir()
+    status, out, err = run(capsys, "map", "dune", "--over", "Re=1,2", *words)
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert line in err
+
+
+def test_a_flow_without_a_surface_mode_has_no_map_of_k_max(tmp_path, capsys):
+    status, _, err = run(capsys, "map", "poiseuille", "--over", "Re=1e4,2e4", "-o", str(tmp_path / "x.csv"))
+    assert status == 2
+    assert "poiseuille has no slow surface mode; ask for growth_rate" in err
