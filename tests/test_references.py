@@ -3,7 +3,9 @@ import random
 
 import mpmath as mp
 import pytest
-from references import dune, vortex, wall_response
+import references
+from references import couette, dune, film, poiseuille, rollwave, two_layer_couette, vortex, wall_response
+from twins import table
 
 # k, Re, depth, -R to 22 significant digits: exact Airy integrals.
 WAVY_WALL = [
@@ -149,3 +151,115 @@ def test_dune_digits(seed):
 
     sigma = followed(solve, lambda k: long_wave_dune(shields, b, wall_response(k, Re, depth), k), k)
     assert agree(solve(k, sigma), solve(k, sigma, digits=45), 30)
+
+
+def speeds():
+    """(flow, Re, k, real part of c, imaginary part) of plane Poiseuille and Couette flow, as printed."""
+    modes = [("poiseuille", 10000, 1, row["c_r"], row["c_i"]) for row in table("recomputed_poiseuille")]
+    return modes + [(row["flow"], int(float(row["Re"])), 1, row["c_r"], row["c_i"])
+                    for row in table("recomputed_shear_flows")]
+
+
+@pytest.mark.parametrize(("flow", "Re", "k", "real", "imag"), speeds())
+def test_plane_flows(flow, Re, k, real, imag):
+    solve = getattr(references, flow)
+    with mp.workdps(30):
+        sigma = -1j * mp.mpc(real, imag)
+        c = 1j * solve(Re, k, sigma, digits=24)
+        for part, printed in (c.real, real), (c.imag, imag):
+            assert abs(part - mp.mpf(printed)) <= mp.mpf(10) ** -len(printed.partition(".")[2])
+    assert not agree(solve(1.01 * Re, k, sigma, digits=10, radius=0.1), sigma, 5)
+
+
+def test_poiseuille_critical_point():
+    with mp.workdps(30):
+        Re, k, c = (mp.mpf(row["value"]) for row in table("recomputed_poiseuille_critical"))
+        found = 1j * poiseuille(Re, k, -1j * k * c) / k
+        assert abs(found.imag) < 1e-22
+        assert agree(found.real, c, 23)
+
+
+def slow_growth(solve, k):
+    """Growth rate over k^2 of a mode that is neutral as k -> 0, and the relative size of the next term."""
+    return [solve(k * factor).real / (k * factor)**2 for factor in (1, mp.mpf(1) / 2)]
+
+
+@pytest.mark.parametrize("slope", [30, 90, 120])
+def test_film_long_waves(slope):
+    """sigma = -2 i k + (8/15)(Re - (5/4) cot slope) k^2 + O(k^3), Yih (1963)."""
+    with mp.workdps(30):
+        Re = mp.mpf(7)
+        exact = mp.mpf(8) / 15 * (Re - mp.mpf(5) / 4 * mp.cot(mp.radians(slope)))
+        coarse, fine = slow_growth(lambda k: film(Re, slope, 0.3, k, -2j * k), mp.mpf("1e-5"))
+        assert agree(fine, exact, 8)
+        assert abs((coarse - exact) / (fine - exact) - 4) < 1e-3
+
+
+def test_film_capillary_waves():
+    """Short waves on deep liquid without inertia decay at the rate k We Re/2 of Stokes flow, seen from the surface."""
+    k, Re, We = 20, mp.mpf("1e-8"), mp.mpf("1e6")
+    sigma = film(Re, 90, We, k, -1j * k - k * We * Re / 2, radius=0.1)
+    assert agree(sigma.real, -k * We * Re / 2, 5)
+
+
+def test_roll_wave_thresholds():
+    """The k^2 of the growth rate vanishes at Fr2 = 4 - 6 t^2 + 3 e0 t, t = tan(slope)."""
+    with mp.workdps(30):
+        t, low, high, k = mp.tan(mp.radians(28)), mp.mpf("0.3819"), mp.mpf("0.6435"), mp.mpf("1e-6")
+        e0 = (high - t) * (t - low) / (high - low)
+        threshold = 4 - 6 * t**2 + 3 * e0 * t
+
+        def growth(F):
+            return rollwave(28, F, low, high, k, -1j * k).real / k**2
+
+        expected = ((mp.mpf("1.2") / 10 - mp.mpf(2) / 5 + mp.mpf(3) / 5 * t**2) / e0 - mp.mpf(3) / 10 * t)
+        assert agree(growth(mp.mpf("1.2")), expected, 8)
+        assert abs(growth(threshold)) < 1e-8 * abs(expected)
+
+
+def yih(m, n):
+    return 2 * m * n**2 * (m - 1) * (n + 1) / ((m + n) * (m**2 + 4 * m * n**3 + 6 * m * n**2 + 4 * m * n + n**4))
+
+
+def test_two_layer_long_waves():
+    """c relative to the interface as k -> 0, Yih (1967), and for equal depths the next term."""
+    with mp.workdps(30):
+        k, Re = mp.mpf("1e-5"), mp.mpf(30)
+        for m, n in (mp.mpf(3), mp.mpf(1)), (mp.mpf("0.2"), mp.mpf("1.7")):
+            limit = -1j * k * (n / (m + n) + yih(m, n))
+            sigma = two_layer_couette(m, n, 1, Re, 0, 0, k, limit)
+            assert agree(sigma.imag, limit.imag, 8)
+            if n == 1:
+                growth = Re * (m - 1)**4 * (5 * m**2 + 6 * m + 5) / (60 * (m + 1) * (m**2 + 14 * m + 1)**3)
+                assert agree(sigma.real / k**2, growth, 8)
+
+
+def test_two_layers_of_one_liquid_are_couette_flow():
+    """Equal liquids: modes of plane Couette flow in other scales, U = (1 + z)/2 and depth 2, Re four times larger."""
+    with mp.workdps(30):
+        k, Re = mp.mpf(1), 100
+        expected = couette(Re, k, -0.2904098 + 0.2073979j)
+        found = two_layer_couette(1, 1, 1, 2 * Re, 0, 0, k, expected / 2 - mp.mpc(0, "0.5"))
+        assert agree(found, expected / 2 - mp.mpc(0, "0.5"), 25)
+
+
+def test_interface_under_gravity_in_stokes_flow():
+    """Rayleigh-Taylor of deep liquids of equal viscosity: growth (density difference) gravity Re/(4 k)."""
+    k, Re, g = 20, mp.mpf("1e-7"), mp.mpf("1e7")
+    sigma = two_layer_couette(1, 1, 0.5, Re, g, 0, k, 0.5 * g * Re / (4 * k) - 0.5j * k, radius=0.1)
+    assert agree(sigma.real, mp.mpf("0.5") * g * Re / (4 * k), 5)
+
+
+@pytest.mark.parametrize("solve", [
+    lambda **how: rollwave(29, 30, 0.38, 0.65, 3, -0.03005506 - 2.15086659j, **how),
+    lambda **how: film(80, 100, 0.2, 2, -0.07901272 - 3.05998484j, **how),
+    lambda **how: couette(300, 2, -0.32260034 - 1.12003044j, **how),
+    lambda **how: two_layer_couette(3, 0.5, 1.2, 100, 0.7, 0.3, 5, -0.634537 + 2.83175j, **how),
+])
+def test_digits(solve):
+    assert agree(solve(), solve(digits=45), 30)
+
+
+def test_what_takes_too_long_is_refused():
+    with pytest.raises(ArithmeticError, match="bits|terms"):
+        poiseuille(1e9, 1, -0.01 - 0.01j)
