@@ -19,6 +19,7 @@ from numpy.polynomial import chebyshev as C
 from scipy.integrate import solve_bvp
 
 from . import chebyshev
+from .checks import check_wavenumbers
 from .errors import ModeLost, NotResolved, ParameterError
 from .flows import Dune, Vortex
 from .flows.base import parameter
@@ -389,7 +390,7 @@ def continue_in_k(flow, k, *, tolerance=TOLERANCE, residual=None, guess=None, se
     the flow that is solved (`thesis_setting`). `report(done, total)` is called after each point.
     """
     setting = setting or (lambda k: flow)
-    wavenumbers = np.unique(np.asarray(k, dtype=float))
+    wavenumbers = np.unique(check_wavenumbers(k))
     effort = _effort(tolerance, residual)
     try:
         walk = _Walk(lambda k: (setting(k), k), *_start(setting, wavenumbers[0], guess, effort[1][0]), effort)

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .errors import NotResolved, ParameterError
+from .checks import check_integer, check_tolerance
+from .errors import NotResolved
 from .pencil import Pencil
 from .refine import refine, refine_many
 from .system import System
@@ -220,20 +221,16 @@ class Solver:
         truncation = width * eigen.truncation
         error = truncation + rounding
         status = "resolved"
-        if error > self.tolerance * abs(sigma):
+        if not error <= self.tolerance * abs(sigma):  # nor where it is not a number
             status = f"error {error:.1e} exceeds tolerance at degree {degree}"
         slope = width * eigen.slope + (1 + self.flow.order) * sigma / k
         return Mode(self.flow, float(k), complex(sigma), float(error), complex(slope), degree, status,
                     float(truncation), float(rounding), eigen.rate, eigen.slope, eigen.x, eigen.y)
 
 
-def check_wavenumbers(k):
-    """Return k as a flat float array (points,), or raise a ParameterError."""
-    wavenumbers = np.atleast_1d(np.asarray(k, dtype=float)).ravel()
-    wrong = wavenumbers[~((wavenumbers > 0) & np.isfinite(wavenumbers))]
-    if len(wrong):
-        raise ParameterError(f"k must be positive and finite (got {wrong[0]:g})")
-    return wavenumbers
+def check_accuracy(tolerance, max_degree, names=("tolerance", "max_degree")):
+    """Return both as numbers, or raise a ParameterError that uses these names."""
+    return check_tolerance(tolerance, names[0]), check_integer(max_degree, names[1], DEGREES[0], DEGREES[-1])
 
 
 def require(mode):

@@ -15,8 +15,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from .checks import check_wavenumbers, shown
 from .errors import ModeLost, NotResolved, ParameterError
-from .mode import DEGREES, TOLERANCE, check_wavenumbers
+from .flows.base import check_flow
+from .mode import DEGREES, TOLERANCE, check_accuracy
 from .output import Row
 from .plane import Plane
 from .record import Record
@@ -110,7 +112,7 @@ def critical(flow: "Flow", vary: str, *, long_wave: bool = False, tolerance: flo
     >>> f"{point.value:.9f} at k = {point.k:g}"
     '1.250000000 at k = 0'
     """
-    (point,) = critical_sweep([flow], vary, long_wave=long_wave, tolerance=tolerance, max_degree=max_degree)
+    (point,) = critical_sweep([check_flow(flow)], vary, long_wave=long_wave, tolerance=tolerance, max_degree=max_degree)
     if strict and point.status != "resolved":
         raise NotResolved(point.status)
     return point
@@ -119,6 +121,7 @@ def critical(flow: "Flow", vary: str, *, long_wave: bool = False, tolerance: flo
 def critical_sweep(flows: "Iterable[Flow]", vary: str, *, long_wave: bool = False, tolerance: float = TOLERANCE,
                    max_degree: int = DEGREES[-1]) -> Iterator[NeutralPoint]:
     """Yield `critical` of each flow in turn, starting from the value found last; what failed is in its status."""
+    tolerance, max_degree = check_accuracy(tolerance, max_degree)
     last = None
     for flow in flows:
         check_parameter_name(flow, vary)
@@ -133,8 +136,8 @@ def critical_sweep(flows: "Iterable[Flow]", vary: str, *, long_wave: bool = Fals
 def check_parameter_name(flow: "Flow", name: str) -> str:
     """Return `name` if it is a numeric parameter of the flow, else raise a ParameterError."""
     known = [item.name for item in fields(flow) if "options" not in item.metadata]
-    if name not in known:
-        raise ParameterError(f"{flow.name} has no numeric parameter {name!r} to vary; it has {', '.join(known)}")
+    if not (isinstance(name, str) and name in known):
+        raise ParameterError(f"{flow.name} has no numeric parameter {shown(name)} to vary; it has {', '.join(known)}")
     return name
 
 
@@ -264,8 +267,9 @@ def neutral_curve(flow: "Flow", vary: str, k: "ArrayLike", *, tolerance: float =
     A wavenumber that the curve does not reach keeps one point without numbers, whose status says so.
     Raises NotResolved where there is no critical point to start from.
     """
-    check_parameter_name(flow, vary)
+    check_parameter_name(check_flow(flow), vary)
     wavenumbers = check_wavenumbers(k)
+    tolerance, max_degree = check_accuracy(tolerance, max_degree)
     origin = _critical(flow, vary, tolerance, max_degree)
     if origin.value is None:
         raise NotResolved(origin.status)

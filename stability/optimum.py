@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from .errors import ModeLost, NotResolved
-from .mode import DEGREES, TOLERANCE, Assembly, Solver
+from .checks import check_wavenumbers, shown
+from .errors import ModeLost, NotResolved, ParameterError
+from .flows.base import check_flow
+from .mode import DEGREES, TOLERANCE, Assembly, Solver, check_accuracy
 from .output import Row
 from .record import Record
 from .threads import one_thread
@@ -158,7 +160,7 @@ def k_max(flow: "Flow", search: tuple[float, float] = SEARCH, *, tolerance: floa
     Only maxima with positive growth rate count: a flow that decays everywhere has none. Raises
     NotResolved if there is none; with strict=False the record says so in `status`.
     """
-    (optimum,) = k_max_sweep([flow], search, tolerance=tolerance, max_degree=max_degree)
+    (optimum,) = k_max_sweep([check_flow(flow)], search, tolerance=tolerance, max_degree=max_degree)
     if strict and optimum.status != "resolved":
         raise NotResolved(f"{flow}: {optimum.status}")
     return optimum
@@ -170,10 +172,20 @@ def k_max_sweep(flows: "Iterable[Flow]", search: tuple[float, float] = SEARCH, *
 
     Flows with the same equations share their matrices (dunes at different Re, say).
     """
+    tolerance, max_degree = check_accuracy(tolerance, max_degree)
+    search = check_search(search)
     assembly = None
     for flow in flows:
         optimum, assembly = _optimum(flow, search, tolerance, max_degree, assembly)
         yield optimum
+
+
+def check_search(search):
+    """Return a range of wavenumbers as (low, high), or raise a ParameterError."""
+    wavenumbers = check_wavenumbers(search, "search").tolist()
+    if len(wavenumbers) != 2 or not wavenumbers[0] < wavenumbers[1]:
+        raise ParameterError(f"search: give a range of wavenumbers (low, high) (got {shown(search)})")
+    return wavenumbers
 
 
 @one_thread

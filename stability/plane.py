@@ -14,13 +14,14 @@ import numpy as np
 from .errors import ModeLost, ParameterError
 from .mode import Solver
 from .sensitivity import parameter_slope
-from .spectra import finite_rates, leading_modes
+from .spectra import dense_degrees, finite_rates, leading_modes
 
 _NEAR = 0.6  # in log k
 _DRIFT = 0.05  # of the growth between two degrees, relative to |sigma|, at which a look is good enough
 _OVERLAP = 0.5
 _HALVINGS = 12
 _FIRST = 0.01  # value tried instead of 0
+_LOOKS = 4  # over all wavenumbers, each at the degree that the fastest of the look before needs
 _LOW = 8  # rung of the degrees below which no look starts
 _SETTLED = 1e-3  # growth / |sigma| nearer to zero than this, in a look, is computed properly
 
@@ -130,15 +131,24 @@ class Plane:
     def _look(self, value):
         """Leading growth and rate at all wavenumbers, at the first degree at which the largest growth settles."""
         solver = self.solver(value)
-        degrees = solver.degrees[self._first:] or solver.degrees
-        for rung, (degree, finer) in enumerate(zip(degrees, (*degrees[1:], degrees[-1]), strict=True), self._first):
-            rates = np.array([finite_rates(solver, degree, solver.symbols(k))[0] for k in self.wavenumbers.tolist()])
+        degrees, rung = dense_degrees(solver, self._first), 0
+        for _ in range(_LOOKS):
+            rates = np.array([_leading(solver, degrees[rung], k) for k in self.wavenumbers.tolist()])
             growth = solver.width(self.wavenumbers) * rates.real
             best = int(np.argmax(growth))
-            check = finite_rates(solver, finer, solver.symbols(self.wavenumbers[best]))[0]
-            if abs(check - rates[best]) < _DRIFT * abs(check):
-                self._first = max(_LOW, rung - 1)
+            settled = self._settled(solver, degrees[rung:], self.wavenumbers[best], rates[best])
+            if settled == 0:
+                self._first = max(_LOW, self._first + rung - 1)
                 return growth, rates
+            rung += settled
+        raise ModeLost(f"{solver.flow}: the least stable modes do not settle up to degree {degrees[rung]}")
+
+    def _settled(self, solver, degrees, k, rate):
+        """Rung at which the leading rate at k no longer moves; it is `rate` at the first of the degrees."""
+        for rung, finer in enumerate((*degrees[1:], degrees[-1])):
+            before, rate = rate, _leading(solver, finer, k)
+            if abs(rate - before) < _DRIFT * abs(rate):
+                return rung
         raise ModeLost(f"{solver.flow}: the least stable modes do not settle up to degree {degrees[-1]}")
 
     def _check_end(self, value, growth):
@@ -175,6 +185,11 @@ class Plane:
         span = f" at every {self.vary} tried from {min(known):.4g} to {max(known):.4g}" if known else ""
         raise ModeLost(f"{self.flow}: {kind}{span}, k from {self.wavenumbers[0]:g} to {self.wavenumbers[-1]:g}; "
                        f"start from another {self.vary}")
+
+
+def _leading(solver, degree, k):
+    """Rate of the least stable mode at one degree."""
+    return finite_rates(solver, degree, solver.symbols(k))[0]
 
 
 def _nearest_pair(known):

@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from .errors import ModeLost, ParameterError
-from .mode import DEGREES, TOLERANCE, Mode, Solver, check_wavenumbers, require
+from .checks import check_options, check_wavenumbers
+from .errors import ModeLost
+from .flows.base import check_flow
+from .mode import DEGREES, TOLERANCE, Mode, Solver, check_accuracy, require
 from .output import Row
 from .record import Record
 from .spectra import converged_rates, leading_modes, polished
@@ -134,12 +136,10 @@ def dispersion(flow: "Flow", k: "ArrayLike", mode: str | None = None, *, toleran
     "most-unstable" takes the least stable mode of the spectrum at each k. `tolerance` bounds error / |sigma|.
     Raises NotResolved or ModeLost; with strict=False the record says in `status` and `lost` what failed.
     """
+    check_flow(flow)
     wavenumbers = check_wavenumbers(k)
-    if not len(wavenumbers):
-        raise ParameterError("k: at least one wavenumber is needed (got none)")
-    mode = mode or default_mode(flow)
-    if mode not in MODES:
-        raise ParameterError(f"mode must be one of {', '.join(MODES)} (got {mode!r})")
+    mode = default_mode(flow) if mode is None else check_options("mode", mode, MODES)
+    tolerance, max_degree = check_accuracy(tolerance, max_degree)
     solver = Solver(flow, tolerance, max_degree)
     solver.prepare(wavenumbers)
     walk = {"surface": _surface, "leading": _leading, "most-unstable": _most_unstable}[mode]

@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from scipy.linalg import qr
 
+from .checks import check_integer, check_wavenumber
 from .errors import ModeLost
-from .mode import DEGREES, TOLERANCE, Mode, Solver, check_wavenumbers, require
+from .flows.base import check_flow
+from .mode import DEGREES, TOLERANCE, Mode, Solver, check_accuracy, require
 from .output import Row
 from .record import Record
 from .threads import one_thread
@@ -23,6 +25,10 @@ from .threads import one_thread
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+MOST = 200  # modes that can be asked for
+
+_LARGEST = 1300  # unknowns of a dense problem
+_SPARE = 10  # eigenvalues beside twice the number asked for that are tried
 _SHIFT = 0.01 - 0.013j  # tried when the pencil is singular at rate 0
 _SINGULAR = 1e14  # ratio of the two largest theta above which rate 0 is taken for an eigenvalue
 _FIRST = 4  # rung of the degrees at which a look starts
@@ -78,11 +84,21 @@ class Spectrum(Record):
         return [{name: getattr(mode, name) for name in names} for mode in self.modes]
 
 
+def dense_degrees(solver, first, step=1):
+    """Degrees for dense problems, from rung `first` on, as far as one takes no longer than about a second."""
+    layers = len(solver.assembly.system.fields)
+    affordable = [degree for degree in solver.degrees if degree * layers <= _LARGEST] or solver.degrees[:1]
+    return affordable[first::step] or affordable[-1:]
+
+
 def finite_rates(solver, degree, symbols):
     """Return the finite eigenvalues of the pencil of this degree, all of them, by decreasing real part."""
     pencil, count = solver.pencil(degree), _finite_count(solver, degree)
     theta, shift = _theta(pencil, pencil.weights(symbols).value, count)
     rates = shift + 1 / theta[:count]
+    rates = rates[np.isfinite(rates)]
+    if not len(rates):
+        raise ModeLost(f"{solver.flow}: no eigenvalue at degree {degree} is a number in double precision")
     return rates[np.argsort(-rates.real)]
 
 
@@ -91,14 +107,15 @@ def _theta(pencil, weights, rank=None):
     rows = pencil.rate_rows
     columns = np.zeros((pencil.size, len(rows)))
     columns[rows, np.arange(len(rows))] = 1
+    theta = np.zeros(0)
     for shift in (0.0, _SHIFT):
         try:
             response = pencil.factors(weights, shift).solve(columns)
-        except np.linalg.LinAlgError:
+            theta = _eigenvalues(pencil.b(weights[:, None], response)[rows], rank)
+        except np.linalg.LinAlgError:  # singular, or not finite
             continue
-        theta = _eigenvalues(pencil.b(weights[:, None], response)[rows], rank)
         theta = theta[np.argsort(-np.abs(theta))]
-        if np.abs(theta[0]) < _SINGULAR * np.abs(theta[1]):
+        if np.abs(theta[0]) < _SINGULAR * np.abs(theta[1:2]).sum():
             break
     return theta, shift
 
@@ -107,7 +124,7 @@ def _eigenvalues(g, rank):
     """Eigenvalues of g; the non-zero ones alone from g = q r, which has those of r q."""
     if rank is None or rank >= len(g):
         return np.linalg.eigvals(g)
-    q, r, order = qr(g, pivoting=True)
+    q, r, order = qr(g, pivoting=True, check_finite=False)
     return np.linalg.eigvals(r[:rank] @ q[order, :rank])
 
 
@@ -140,13 +157,13 @@ def spectrum(flow, k, modes=10, *, tolerance=TOLERANCE, max_degree=DEGREES[-1], 
     The degree of the dense problem is raised until those modes no longer move. Raises NotResolved if
     one of them is not resolved within `max_degree`; with strict=False its status says so instead.
     """
-    check_wavenumbers(k)
-    solver = Solver(flow, tolerance, max_degree)
-    found = leading_modes(solver, float(k), modes)
+    k, modes = check_wavenumber(k), check_integer(modes, "modes", 1, MOST)
+    solver = Solver(check_flow(flow), *check_accuracy(tolerance, max_degree))
+    found = leading_modes(solver, k, modes)
     if strict:
         for mode in found:
             require(mode)
-    return Spectrum(flow, float(k), tuple(found))
+    return Spectrum(flow, k, tuple(found))
 
 
 def leading_modes(solver, k, count):
@@ -160,7 +177,7 @@ def leading_modes(solver, k, count):
 def polished(solver, k, count, rates, degree):
     """Refine the first `count` of the dense eigenvalues of a degree that lead to modes."""
     found = []
-    for rate in rates:
+    for rate in rates[: 2 * count + _SPARE]:
         mode = _polish(solver, k, rate, degree)
         if mode is not None and not any(_same(mode, other) for other in found):
             found.append(mode)
@@ -178,7 +195,7 @@ def converged_rates(solver, k, count, like=None):
     """
     previous = None
     first = max(_FIRST, solver.degrees.index(like) - 2) if like else _FIRST
-    for degree in solver.degrees[first::2] or solver.degrees[-1:]:
+    for degree in dense_degrees(solver, first, 2):
         rates = finite_rates(solver, degree, solver.symbols(k))
         if previous is not None:
             lead = rates[:count]

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field, fields
 from math import isfinite
 from typing import ClassVar
 
+from ..checks import LARGEST, as_number, check_options, in_double_precision, shown
 from ..errors import ParameterError
 
 
@@ -62,22 +63,30 @@ class Flow:
         return cls.long_wave is not Flow.long_wave
 
 
+def check_flow(flow):
+    """Return the flow, or raise a ParameterError where it is something else."""
+    if not isinstance(flow, Flow):
+        hint = f"; did you mean {flow.__name__}()?" if isinstance(flow, type) and issubclass(flow, Flow) else ""
+        raise ParameterError(f"flow must be an object of a class in stability.flows{hint} (got {shown(flow)})")
+    return flow
+
+
 def check_parameter(flow, item, value):
     """Return the value as a float (or one of the options), or raise a `ParameterError` that says why not."""
     rule = item.metadata
     if "options" in rule:
-        if value not in rule["options"]:
-            raise ParameterError(f"{flow}: {item.name} must be one of {', '.join(rule['options'])} (got {value!r})")
-        return value
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        raise ParameterError(f"{flow}: {item.name} must be a number in {allowed(rule)} (got {value!r})") from None
+        return check_options(f"{flow}: {item.name}", value, rule["options"])
+    number = as_number(value)
+    if number is None:
+        raise ParameterError(f"{flow}: {item.name} must be a number in {allowed(rule)} (got {shown(value)})")
     inside = (rule["low"] is None or number > rule["low"] or rule["closed"] and number == rule["low"]) \
         and (rule["high"] is None or number < rule["high"])
     if not inside or not (isfinite(number) or rule["unbounded"] and number > 0):
         reason = f": {rule['reason']}" if rule["reason"] else ""
         raise ParameterError(f"{flow}: {item.name} must lie in {allowed(rule)}{reason} (got {number:g})")
+    if isfinite(number) and not in_double_precision(number):
+        raise ParameterError(f"{flow}: {item.name} must lie between {1 / LARGEST:g} and {LARGEST:g} for double "
+                             f"precision: change the scales (got {number:g})")
     return number
 
 

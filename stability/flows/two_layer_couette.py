@@ -37,7 +37,8 @@ class TwoLayerCouette(Flow):
     def layers(self, names):
         m, n = self.viscosity_ratio, self.depth_ratio
         return (
-            Layer("lower", lambda s: profile(s, n, 0.0, 1 / (m + n), m / self.Re, self.density_ratio)),
+            Layer("lower", lambda s: profile(s, n, 0.0, 1 / (m + n), m / self.Re, self.density_ratio),
+                  steady=self.density_ratio == 0),
             Layer("upper", lambda s: profile(s, 1.0, self.interface_speed, m / (m + n), 1 / self.Re, 1.0)),
         )
 

@@ -8,7 +8,7 @@ from difflib import get_close_matches
 from ..errors import ParameterError
 from ..flows import FLOWS
 from ..flows.base import allowed
-from ..mode import DEGREES, TOLERANCE
+from ..mode import DEGREES, TOLERANCE, check_accuracy
 from ..output import header_of, render, whole_file, write
 from ..specs import parse_spec
 
@@ -90,18 +90,8 @@ def swept_values(text, flow):
 
 
 def options_of(arguments):
-    tolerance = parse_spec(arguments.tolerance, "--tolerance")[0]
-    if not 1e-15 <= tolerance <= 0.1:
-        raise ParameterError(f"--tolerance: must lie in [1e-15, 0.1] (got {tolerance:g})")
-    return {"tolerance": tolerance,
-            "max_degree": integer(arguments.max_degree, "--max-degree", DEGREES[0], DEGREES[-1])}
-
-
-def integer(text, name, low, high):
-    value = int(text) if text.isdecimal() else None
-    if value is None or not low <= value <= high:
-        raise ParameterError(f"{name}: must be an integer from {low} to {high} (got {text!r})")
-    return value
+    tolerance, max_degree = check_accuracy(arguments.tolerance, arguments.max_degree, ("--tolerance", "--max-degree"))
+    return {"tolerance": tolerance, "max_degree": max_degree}
 
 
 def report(arguments, flow, compute, swept=()):

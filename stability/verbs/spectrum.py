@@ -1,9 +1,10 @@
 """stability spectrum: the least stable modes at one wavenumber."""
 
+from ..checks import check_integer
 from ..specs import parse_spec
-from ..spectra import spectrum
+from ..spectra import MOST, spectrum
 from ..wellposed import notes_on
-from .common import add_verb, flow_of, integer, k_option, options_of, report
+from .common import add_verb, flow_of, k_option, options_of, report
 
 
 def add(verbs):
@@ -17,7 +18,7 @@ def _modes_option(verb):
 
 def _run(arguments):
     flow, options = flow_of(arguments), options_of(arguments)
-    count = integer(arguments.modes, "--modes", 1, 200)
+    count = check_integer(arguments.modes, "--modes", 1, MOST)
     wavenumbers = parse_spec(arguments.k, "--k")
 
     def compute():

@@ -1,8 +1,9 @@
 """stability wellposed: where a flow's own equations are ill posed, and how its fastest modes grow with k."""
 
+from ..checks import check_integer
 from ..specs import parse_spec
 from ..wellposed import growth_with_degree, well_posedness
-from .common import RESOLVED, add_verb, flow_of, integer, report
+from .common import RESOLVED, add_verb, flow_of, report
 
 _POINTS = "21"
 _WAVENUMBERS = "1:100:9"  # of the second panel of the figure
@@ -24,7 +25,7 @@ def _points_option(verb):
 
 def _run(arguments):
     flow = flow_of(arguments)
-    count = integer(arguments.points, "--points", 2, 100_000)
+    count = check_integer(arguments.points, "--points", 2, 100_000)
     wavenumbers = parse_spec(arguments.k, "--k") if arguments.k else None
 
     def compute():

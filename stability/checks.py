@@ -1,0 +1,82 @@
+"""What a user may pass: numbers, wavenumbers, accuracy. Anything else is refused in one line."""
+
+from math import inf
+
+import numpy as np
+
+from .errors import ParameterError
+
+LARGEST = 1e20  # of a parameter or wavenumber, and 1/LARGEST the smallest beside 0: products of several stay finite
+
+_SHOWN = 60  # characters of a wrong value in a message
+
+
+def as_number(value):
+    """The value as a float, or None if it is no real number: text and zero-dimensional arrays may be."""
+    if type(value) is float:
+        return value
+    if isinstance(value, complex) or np.iscomplexobj(value) or value is np.ma.masked or np.ndim(value):
+        return None
+    try:
+        return float(value)
+    except OverflowError:  # an integer beyond the floats
+        return inf if value > 0 else -inf
+    except (TypeError, ValueError):
+        return None
+
+
+def in_double_precision(number):
+    """Whether a finite number is 0 or of a size whose products neither overflow nor underflow."""
+    return number == 0 or 1 / LARGEST <= abs(number) <= LARGEST
+
+
+def shown(value, number=None):
+    """A value given by the user, in one line of bounded length; as a number where it is one."""
+    text = " ".join(repr(value).split()) if number is None else f"{number:g}"
+    return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
+
+
+def check_wavenumbers(k, name="k"):
+    """Return k, a number or a sequence, as a flat float array (points,), or raise a ParameterError."""
+    values = (k if isinstance(k, np.ndarray) else np.asarray(k, dtype=object)).ravel().tolist()
+    if not values:
+        raise ParameterError(f"{name}: give at least one wavenumber")
+    numbers = [as_number(value) for value in values]
+    for value, number in zip(values, numbers, strict=True):
+        if number is None or not 0 < number < inf:
+            raise ParameterError(f"{name} must be positive and finite (got {shown(value, number)})")
+        if not in_double_precision(number):
+            raise ParameterError(f"{name} must lie between {1 / LARGEST:g} and {LARGEST:g} for double precision: "
+                                 f"change the scales (got {number:g})")
+    return np.array(numbers)
+
+
+def check_wavenumber(k, name="k"):
+    """Return one wavenumber as a float, or raise a ParameterError."""
+    wavenumbers = check_wavenumbers(k, name)
+    if len(wavenumbers) != 1:
+        raise ParameterError(f"{name}: give one wavenumber (got {len(wavenumbers)})")
+    return float(wavenumbers[0])
+
+
+def check_tolerance(value, name="tolerance"):
+    """Return a relative tolerance as a float, or raise a ParameterError."""
+    number = as_number(value)
+    if number is None or not 1e-15 <= number <= 0.1:
+        raise ParameterError(f"{name}: must lie in [1e-15, 0.1] (got {shown(value, number)})")
+    return number
+
+
+def check_integer(value, name, low, high):
+    """Return an integer, given as a number or as text, or raise a ParameterError."""
+    number = as_number(value) if not isinstance(value, str) or value.isdecimal() else None
+    if number is None or not low <= number <= high or number != int(number):
+        raise ParameterError(f"{name}: must be an integer from {low} to {high} (got {shown(value, number)})")
+    return int(number)
+
+
+def check_options(name, value, options):
+    """Return one of a few names, or raise a ParameterError."""
+    if not (isinstance(value, str) and value in options):
+        raise ParameterError(f"{name} must be one of {', '.join(options)} (got {shown(value)})")
+    return str(value)
