@@ -22,6 +22,7 @@ _OVERLAP = 0.5
 _HALVINGS = 12
 _FIRST = 0.01  # value tried instead of 0
 _LOOKS = 4  # over all wavenumbers, each at the degree that the fastest of the look before needs
+_WORK = 1e10  # unknowns cubed, summed over the dense problems of all looks: of the order of five seconds
 _LOW = 8  # rung of the degrees below which no look starts
 _SETTLED = 1e-3  # growth / |sigma| nearer to zero than this, in a look, is computed properly
 
@@ -55,6 +56,7 @@ class Plane:
         self.wavenumbers = np.geomspace(0.01, 20, 20) if long_waves else np.geomspace(0.1, 10, 11)
         self._first = _LOW  # rung of the degrees at which a look starts
         self._value = self._solver = None
+        self._work = 0.0  # done so far
 
     def solver(self, value):
         """The solver at this value; the last one is kept."""
@@ -133,7 +135,7 @@ class Plane:
         solver = self.solver(value)
         degrees, rung = dense_degrees(solver, self._first), 0
         for _ in range(_LOOKS):
-            rates = np.array([_leading(solver, degrees[rung], k) for k in self.wavenumbers.tolist()])
+            rates = np.array([self._leading(solver, degrees[rung], k) for k in self.wavenumbers.tolist()])
             growth = solver.width(self.wavenumbers) * rates.real
             best = int(np.argmax(growth))
             settled = self._settled(solver, degrees[rung:], self.wavenumbers[best], rates[best])
@@ -146,10 +148,17 @@ class Plane:
     def _settled(self, solver, degrees, k, rate):
         """Rung at which the leading rate at k no longer moves; it is `rate` at the first of the degrees."""
         for rung, finer in enumerate((*degrees[1:], degrees[-1])):
-            before, rate = rate, _leading(solver, finer, k)
+            before, rate = rate, self._leading(solver, finer, k)
             if abs(rate - before) < _DRIFT * abs(rate):
                 return rung
         raise ModeLost(f"{solver.flow}: the least stable modes do not settle up to degree {degrees[-1]}")
+
+    def _leading(self, solver, degree, k):
+        """Rate of the least stable mode at one degree, as long as the looks have not taken too long."""
+        self._work += solver.pencil(degree).size ** 3
+        if self._work > _WORK:
+            raise ModeLost(f"{solver.flow}: the search is given up: the least stable modes need too large a degree")
+        return finite_rates(solver, degree, solver.symbols(k))[0]
 
     def _check_end(self, value, growth):
         if growth[-1] > 0 and growth[-1] == max(growth):
@@ -185,11 +194,6 @@ class Plane:
         span = f" at every {self.vary} tried from {min(known):.4g} to {max(known):.4g}" if known else ""
         raise ModeLost(f"{self.flow}: {kind}{span}, k from {self.wavenumbers[0]:g} to {self.wavenumbers[-1]:g}; "
                        f"start from another {self.vary}")
-
-
-def _leading(solver, degree, k):
-    """Rate of the least stable mode at one degree."""
-    return finite_rates(solver, degree, solver.symbols(k))[0]
 
 
 def _nearest_pair(known):
