@@ -26,8 +26,8 @@ from itertools import count, islice
 
 import mpmath as mp
 
-_MOST_BITS = 6000
-_MOST_TERMS = 20000
+_MOST_BITS = 4000
+_MOST_TERMS = 8000
 
 
 class Fixed:

@@ -1,9 +1,9 @@
 """A liquid film falling down an inclined plane (Benjamin 1957, Yih 1963)."""
 
 from dataclasses import dataclass
-from math import cos, radians, sin
 from typing import ClassVar
 
+from ..angles import cot_deg
 from ..layer import Layer, Profile
 from .base import Flow, parameter
 
@@ -50,7 +50,7 @@ class Film(Flow):
 
     @property
     def cot_slope(self):
-        return cos(radians(self.slope_deg)) / sin(radians(self.slope_deg))
+        return float(cot_deg(self.slope_deg))
 
 
 def profile(s, Re):

@@ -1,9 +1,11 @@
 """Roll waves in granular flow down an inclined plane (Forterre 2006; Cawthorn's thesis, section 4.0)."""
 
 from dataclasses import dataclass
+from fractions import Fraction
 from math import atan, degrees, radians, sqrt, tan
 from typing import ClassVar
 
+from ..angles import tan_deg
 from ..errors import ParameterError
 from ..layer import Layer, Profile
 from .base import Flow, parameter
@@ -57,11 +59,13 @@ class RollWave(Flow):
 
     @property
     def mu(self):
-        return tan(radians(self.slope_deg))
+        return float(tan_deg(self.slope_deg))
 
     @property
     def e0(self):
-        return (self.mu2 - self.mu) * (self.mu - self.mu1) / (self.mu2 - self.mu1)
+        """(mu2 - mu)(mu - mu1)/(mu2 - mu1) without cancellation."""
+        mu, mu1, mu2 = tan_deg(self.slope_deg), Fraction(self.mu1), Fraction(self.mu2)
+        return float((mu2 - mu) * (mu - mu1) / (mu2 - mu1))
 
     @property
     def froude(self):

@@ -1,9 +1,9 @@
 """Longitudinal vortices in granular flow down an inclined plane (Cawthorn's thesis, section 4.1)."""
 
 from dataclasses import dataclass
-from math import radians, tan
 from typing import ClassVar
 
+from ..angles import tan_deg
 from ..layer import Layer, Profile
 from .base import Flow, parameter
 
@@ -28,8 +28,7 @@ class Vortex(Flow):
     Fr2: float = parameter(0.1, 0, meaning="squared Froude number, thesis (4.6)")
 
     def layers(self, names):
-        mu = tan(radians(self.slope_deg))
-        return (Layer("grains", lambda s: profile(s, mu, self.Fr2)),)
+        return (Layer("grains", lambda s: profile(s, self.mu, self.Fr2)),)
 
     def conditions(self, edges, names):
         """No slip on the plane; no stress on the displaced surface, which moves with the grains."""
@@ -44,7 +43,11 @@ class Vortex(Flow):
 
     def long_wave(self, k):
         """sigma = -2 k^2 / (5 tan slope), thesis (4.25)."""
-        return -2 * k**2 / (5 * tan(radians(self.slope_deg)))
+        return -2 * k**2 / (5 * self.mu)
+
+    @property
+    def mu(self):
+        return float(tan_deg(self.slope_deg))
 
 
 def profile(s, mu, Fr2):
