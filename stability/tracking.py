@@ -21,7 +21,8 @@ _SMALLEST_STEP = 1e-8
 _PREDICTION = 0.05  # relative error of the predictor at which the step length is kept
 _BEND = 0.1  # largest departure of a step from the mean of its end slopes, relative
 _OVERLAP = 0.4  # largest deviation of the overlap from 1
-_STEPS = 2000
+_STEPS = 1000
+_TRUST = 0.01  # largest relative error of a mode from which a walk goes on
 _GRID = 0.05  # spacing in log k of the wavenumbers that a survey lands on
 _FEW = 3  # wavenumbers that are walked to one by one
 _MANY = 8  # wavenumbers between two nodes that are refined one by one
@@ -235,7 +236,7 @@ class _Walk:
         rate, vectors = self._predict(k)
         try:
             mode = self.solver.solve(k, rate, vectors, self.solver.next_degree(self.now))
-            fits = self._same_kind(mode) and self._smooth(mode)
+            fits = self._trusted(mode) and self._same_kind(mode) and self._smooth(mode)
             deviation = abs(self.solver.overlap(self.now, mode) - 1) if fits else np.inf
         except ModeLost:
             deviation = np.inf
@@ -250,6 +251,10 @@ class _Walk:
             return
         if self.step < _SMALLEST_STEP:
             raise self._lost(f"no mode overlaps its neighbour at k = {k:.6g}")
+
+    def _trusted(self, mode):
+        """Whether the mode is resolved well enough to be followed, if not to the tolerance."""
+        return mode.error <= max(_TRUST, self.solver.tolerance) * abs(mode.sigma)
 
     def _smooth(self, mode):
         """Whether the rates and slopes at both ends of the step belong to one smooth curve in log k."""
