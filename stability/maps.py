@@ -13,10 +13,11 @@ from typing import Any
 
 import numpy as np
 
+from .checks import check_wavenumbers
 from .errors import ParameterError, StabilityError, WorkersLost
 from .flows.base import check_parameter
 from .journal import Journal
-from .mode import DEGREES, TOLERANCE, check_wavenumbers
+from .mode import DEGREES, TOLERANCE
 from .neutral import check_parameter_name, critical_sweep
 from .optimum import k_max_sweep
 from .output import header_of

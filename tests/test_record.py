@@ -188,7 +188,7 @@ def test_lost_wavenumbers_keep_their_place_among_the_rows(record, tmp_path):
 
 
 def test_no_wavenumber_is_refused():
-    with pytest.raises(ParameterError, match="k: at least one wavenumber is needed"):
+    with pytest.raises(ParameterError, match="k: give at least one wavenumber"):
         dispersion(flows.Vortex(), [])
 
 

@@ -3,10 +3,11 @@
 import sys
 from pathlib import Path
 
+from ..checks import check_integer
 from ..errors import ParameterError
 from ..output import check_writable
 from ..specs import parse_spec
-from .common import SPEC, add_verb, check_plot, flow_of, integer, options_of, report, swept_values
+from .common import SPEC, add_verb, check_plot, flow_of, options_of, report, swept_values
 from .critical import vary_option
 from .methods import INTERRUPTED_STATUS
 from .progress import Bar
@@ -36,7 +37,7 @@ def _run(arguments):
     from ..pool import cores
 
     request = _request(arguments)
-    workers = cores() if arguments.workers is None else integer(arguments.workers, "--workers", 1, _MOST_WORKERS)
+    workers = cores() if arguments.workers is None else check_integer(arguments.workers, "--workers", 1, _MOST_WORKERS)
     arguments.form = _form(arguments)
     _check_files(arguments, request)
     journal = Path(f"{arguments.output}.partial")
