@@ -75,6 +75,7 @@ class Growth:
         return abs(self.rates[-1] - self.rates[-2]) <= _SETTLED * abs(self.rates[-1])
 
 
+@one_thread
 def well_posedness(flow, points=POINTS):
     """Return the `WellPosedness` of a flow, at `points` points of each of its layers.
 

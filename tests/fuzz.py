@@ -39,6 +39,8 @@ from stability.neutral import critical
 
 BUDGET = 20.0  # seconds of CPU that a point may take
 REFERENCE_BUDGET = 10.0
+COMMANDS = "dispersion", "spectrum", "kmax", "critical", "neutral", "wellposed", "flows"
+REASONS = 40  # of refusals that are listed
 SAMPLE = 300  # resolved eigenvalues compared with the references, over all flows
 
 # usual and whole ranges of the parameters: log-uniform, or uniform where the lower end is not positive
@@ -392,6 +394,11 @@ def table(outcomes, group):
     return rows
 
 
+def _verb(outcome):
+    first = outcome.point.split()[0]
+    return first if first.isalpha() and first in COMMANDS else "spoiled"
+
+
 def text(rows):
     widths = [max(len(str(row[i])) for row in rows) for i in range(len(rows[0]))]
     return "\n".join("  ".join(str(cell).rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows)
@@ -400,7 +407,10 @@ def text(rows):
 def reasons(outcomes):
     """Rows of the grouped reasons of refusals, most frequent first."""
     counts = Counter((outcome.kind, grouped(outcome.reason)) for outcome in outcomes if outcome.kind != "resolved")
-    return [["count", "refusal", "reason"], *([count, *key] for key, count in counts.most_common())]
+    first = counts.most_common(REASONS)
+    rest = sum(counts.values()) - sum(count for _, count in first)
+    return [["count", "refusal", "reason"], *([count, *key] for key, count in first),
+            *([[rest, "", f"{len(counts) - REASONS} other reasons"]] if rest else [])]
 
 
 @contextlib.contextmanager
@@ -465,7 +475,7 @@ def main():
 
     rows = table(outcomes, lambda outcome: outcome.point.flow) if outcomes else []
     for part in (rows, table(outcomes, lambda outcome: outcome.point.verb) if outcomes else [],
-                 table(lines, lambda outcome: outcome.point.split()[0]) if lines else [], reasons(outcomes + lines)):
+                 table(lines, _verb) if lines else [], reasons(outcomes + lines)):
         if part:
             print("\n" + text(part))
     print(f"\nagainst references: {dict(counts)}")

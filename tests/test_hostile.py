@@ -4,12 +4,14 @@ import math
 import warnings
 
 import fuzz
+import mpmath as mp
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stability import ParameterError, StabilityError, dispersion, flows
+from stability import ParameterError, StabilityError, dispersion, flows, k_max, spectrum
+from stability.angles import cot_deg
 from stability.checks import LARGEST, check_wavenumbers
 from stability.flows import FLOWS
 from stability.specs import parse_spec
@@ -76,6 +78,102 @@ def test_the_fuzz_sees_wrong_eigenvalues():
 def test_the_fuzz_sees_bad_manners_of_the_command_line(result):
     with pytest.raises(AssertionError):
         fuzz.verdict(*result)
+
+
+# Failures that the fuzz has found.
+
+FOUND = {
+    "overflow in the equations": fuzz.Point("vortex", {"slope_deg": 1e-310, "Fr2": 5.7e11}, "dispersion", {"k": 2e-3}),
+    "overflow of a power": fuzz.Point("two_layer_couette", {"depth_ratio": 1e160}, "dispersion", {"k": 1.0}),
+    "overflow of long text": fuzz.Point("dune", {"Re": 10**400}, "dispersion", {"k": 1.0}),
+    "no finite eigenvalue": fuzz.Point("dune", {"shields": 1e8, "mu1": 2.8e6, "b": 5e-324, "Re": 5e6, "depth": 4e-8},
+                                       "dispersion", {"k": 2e-3, "mode": "leading"}),
+    "complex parameter": fuzz.Point("rollwave", {"Fr2": np.complex128(1j)}, "k_max", {}),
+    "masked parameter": fuzz.Point("film", {"Re": np.ma.masked}, "dispersion", {"k": 1.0}),
+    "complex wavenumber": fuzz.Point("vortex", {}, "dispersion", {"k": 1j}),
+    "huge wavenumber": fuzz.Point("vortex", {}, "spectrum", {"k": 10**400}),
+    "no wavenumber": fuzz.Point("vortex", {}, "dispersion", {"k": []}),
+    "degree as text": fuzz.Point("dune", {}, "dispersion", {"k": 1.0, "max_degree": "1e999"}),
+    "negative degree": fuzz.Point("two_layer_couette", {}, "k_max", {"max_degree": -1}),
+    "tolerance": fuzz.Point("dune", {}, "spectrum", {"k": 1.0, "tolerance": math.nan}),
+    "modes": fuzz.Point("dune", {}, "spectrum", {"k": 1.0, "modes": 10**9}),
+    "name": fuzz.Point("dune", {}, "critical", {"vary": []}),
+}
+
+
+@pytest.mark.parametrize("found", FOUND.values(), ids=FOUND)
+def test_what_failed_is_refused_as_bad_input(found):
+    outcome = fuzz.attempt(found)
+    assert (outcome.kind, outcome.seconds < 1) == ("ParameterError", True), outcome.reason
+
+
+LONG = {
+    "modes that never settle": fuzz.Point(
+        "dune", {"shields": 24676.8, "mu1": 23.6, "b": 1.4e-3, "Re": 4.9e10, "fluid": "layer"},
+        "dispersion", {"k": 16101.7, "mode": "leading", "strict": False}),
+    "ill-posed at every value": fuzz.Point(
+        "rollwave", {"slope_deg": 14.2186, "Fr2": 0.0165, "mu1": 0.25338, "mu2": 0.68674}, "critical",
+        {"vary": "mu1", "strict": False}),
+    "a walk on unresolved modes": fuzz.Point(
+        "rollwave", {"slope_deg": 89.77200581649878, "Fr2": 1539.6, "mu1": 1.13e-3, "mu2": 287.8}, "dispersion",
+        {"k": 1.62, "strict": False}),
+}
+
+
+@pytest.mark.parametrize("found", LONG.values(), ids=LONG)
+def test_what_took_for_ever_ends(found):
+    outcome = fuzz.attempt(found)
+    assert not outcome.failed
+    assert outcome.kind != "resolved"
+
+
+@pytest.mark.parametrize("flow", [
+    flows.Vortex(slope_deg=89.99999991, Fr2=457000.841699105),
+    flows.RollWave(slope_deg=20.9000001), flows.RollWave(slope_deg=32.76 * (1 - 1e-12)),
+    flows.Film(slope_deg=90.0), flows.Film(slope_deg=179.9999999), flows.Film(slope_deg=1e-9),
+])
+def test_slopes_next_to_a_critical_one_keep_their_digits(flow):
+    mode = dispersion(flow, 0.17).modes[0]
+    kind, reason, _ = fuzz.truth(mode)
+    assert kind == "holds", reason
+
+
+def test_a_liquid_without_mass_carries_no_modes_of_its_own():
+    """Its infinite eigenvalues must not pass for modes."""
+    found = spectrum(flows.TwoLayerCouette(density_ratio=0.0), 1.0, 3).modes
+    assert [fuzz.truth(mode)[0] for mode in found] == ["holds"] * 3
+    layers = flows.TwoLayerCouette(density_ratio=0.0).layers(None)
+    assert [layer.steady for layer in layers] == [True, False]
+
+
+def test_a_massless_liquid_gives_no_warning_on_the_command_line():
+    line = ["spectrum", "two_layer_couette", "--k=0.1", "--modes=3", "--density-ratio=0"]
+    assert not fuzz.attempt(line, lambda line: fuzz.verdict(*fuzz.in_process(line))).failed
+
+
+@pytest.mark.parametrize("flow", [None, "dune", flows.Dune])
+def test_what_is_no_flow_is_refused(flow):
+    with pytest.raises(ParameterError, match="flow must be an object of a class in stability.flows"):
+        dispersion(flow, 1.0)
+
+
+def test_a_class_instead_of_a_flow_gets_a_hint():
+    with pytest.raises(ParameterError, match=r"did you mean Dune\(\)\?"):
+        k_max(flows.Dune)
+
+
+@pytest.mark.parametrize("search", [1.0, (1.0,), (2.0, 1.0), (0.0, 1.0), "wide", None])
+def test_bad_search_ranges_are_refused(search):
+    with pytest.raises(ParameterError, match="search"):
+        k_max(flows.Dune(), search)
+
+
+def test_angles_are_exact_far_beyond_double_precision():
+    with mp.workdps(60):
+        for degrees in (1e-20, 20.9, 45.0, 89.99998447, 90 * (1 - 2.0**-53), 120.0, 179.999):
+            exact = mp.cot(mp.radians(mp.mpf(degrees)))
+            cot = cot_deg(degrees)
+            assert abs(mp.mpf(cot.numerator) / cot.denominator - exact) < mp.mpf("1e-50") * (1 + abs(exact))
 
 
 # Properties.
