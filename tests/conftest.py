@@ -1,10 +1,15 @@
-"""One BLAS thread, and tests in an order of their own: a seed shown in the header, fixed by STABILITY_TEST_SEED."""
+"""One BLAS thread, and tests in an order of their own: a seed shown in the header, fixed by STABILITY_TEST_SEED.
+
+Ctrl-C works in the processes that tests start, even where the tests themselves run in the background of a shell.
+"""
 
 import os
 import random
+import signal
 import time
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+signal.signal(signal.SIGINT, signal.default_int_handler)
 SEED = int(os.environ.get("STABILITY_TEST_SEED", time.time_ns() % 10**6))
 
 
