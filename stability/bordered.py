@@ -10,6 +10,8 @@ import numpy as np
 from scipy.linalg import lapack
 from scipy.sparse import csr_array
 
+_UNEVEN = 1e6  # largest entry of a sum above which its rows and columns are scaled
+
 _BAND = {"f": (lapack.dgbtrf, lapack.dgbtrs), "c": (lapack.zgbtrf, lapack.zgbtrs)}
 
 
@@ -32,10 +34,32 @@ class Bordered:
                          self._starts[1] + row * border + column - interior)
         place[below] = (self._starts[2] + (row - interior) * (interior + border) + column)[below]
         self._spread = csr_array((value, (place, part)), (self._starts[3], parts))
+        place, first = np.unique(place, return_index=True)
+        self._entries = place, row[first], column[first]
 
-    def blocks(self, weights):
-        """Return band, right and bottom of the sum of the parts times weights (parts,)."""
+    def sum(self, weights):
+        """Return the sum of the parts times weights (parts,), and the scales of its rows and columns, or None.
+
+        Where entries are very large, the sum is scaled by powers of two that bring the largest entry of each row and
+        column near 1: an unknown that is tiny beside the others would else be found with few digits of its own.
+        """
         flat = self._spread @ weights
+        if not np.abs(flat).max(initial=0) > _UNEVEN:
+            return flat, None
+        place, row, column = self._entries
+        size = np.abs(flat[place])
+        rows, columns = np.ones((2, self.interior + self.border))
+        for scales, index in 2 * ((columns, column), (rows, row)):
+            largest = np.zeros(len(scales))
+            np.maximum.at(largest, index, size)
+            factor = np.exp2(-np.round(np.log2(np.where(largest > 0, largest, 1.0))))
+            scales *= factor
+            size = size * factor[index]
+        flat[place] *= rows[row] * columns[column]
+        return flat, (rows[:, None], columns[:, None])
+
+    def blocks(self, flat):
+        """Return band, right and bottom of a sum."""
         return tuple(flat[start: stop].reshape(shape) for start, stop, shape in
                      zip(self._starts[:-1], self._starts[1:], self._shapes, strict=True))
 
@@ -47,7 +71,8 @@ class Factors:
     """
 
     def __init__(self, bordered, weights):
-        band, right, bottom = bordered.blocks(weights)
+        flat, self._scales = bordered.sum(weights)
+        band, right, bottom = bordered.blocks(flat)
         factor, self._solve = _BAND[band.dtype.kind]
         self._interior, self._lower, self._upper = bordered.interior, bordered.lower, bordered.upper
         self._lu, self._pivots, info = factor(band.T, self._lower, self._upper, overwrite_ab=True)
@@ -59,12 +84,24 @@ class Factors:
 
     def solve(self, f):
         """Return z with M z = f, (size, points)."""
+        if self._scales:
+            rows, columns = self._scales
+            return columns * self._solved(rows * f)
+        return self._solved(f)
+
+    def _solved(self, f):
         inner = self._inner(f[: self._interior])
         border = self._border @ (f[self._interior:] - self._bottom @ inner)
         return np.concatenate([inner - self._coupled @ border, border])
 
     def solve_left(self, g):
         """Return z with z^T M = g^T (no conjugation), (size, points)."""
+        if self._scales:
+            rows, columns = self._scales
+            return rows * self._solved_left(columns * g)
+        return self._solved_left(g)
+
+    def _solved_left(self, g):
         inner, border = g[: self._interior], g[self._interior:]
         border = self._border.T @ (border - self._coupled.T @ inner)
         return np.concatenate([self._inner(inner - self._bottom.T @ border, trans=1), border])

@@ -65,3 +65,19 @@ def test_a_singular_matrix_is_named():
     bordered = Bordered(np.zeros(5, int), np.arange(5), np.arange(5), np.array([1.0, 1.0, 0.0, 1.0, 1.0]), 1, 3, 2)
     with pytest.raises(np.linalg.LinAlgError):
         Factors(bordered, np.ones(1))
+
+
+def test_small_unknowns_of_uneven_matrices_keep_their_digits(matrices):
+    """Rows and columns of very different size change nothing: each unknown is as accurate as without."""
+    full, entries = matrices
+    rng = np.random.default_rng(3)
+    rows, columns = 10.0 ** rng.integers(-12, 13, (2, SIZE))
+    part, row, column, value = entries
+    uneven = Bordered(part, row, column, value * rows[row] * columns[column], PARTS, INTERIOR, BORDER)
+    weights, x = np.array([1.0, 0.5]), rng.standard_normal((SIZE, 2))
+    matrix = full[0] + 0.5 * full[1]
+    factors = Factors(uneven, weights)
+    found = factors.solve(rows[:, None] * (matrix @ x)) * columns[:, None]
+    np.testing.assert_allclose(found, x, rtol=1e-10)
+    found = factors.solve_left(columns[:, None] * (matrix.T @ x)) * rows[:, None]
+    np.testing.assert_allclose(found, x, rtol=1e-10)

@@ -137,6 +137,15 @@ def test_slopes_next_to_a_critical_one_keep_their_digits(flow):
     assert kind == "holds", reason
 
 
+@pytest.mark.parametrize(("flow", "k"), [(flows.Couette(Re=1e-8), 109.27100157846834), (flows.Couette(Re=1e-6), 30.0),
+                                         (flows.Film(Re=1e-8, slope_deg=99.0, We=0.02), 3.0)])
+def test_modes_of_very_viscous_flows_keep_their_digits(flow, k):
+    """Stresses are 1/Re times as large as velocities, which must not lose their digits to them."""
+    for mode in spectrum(flow, k, 3).modes:
+        kind, reason, _ = fuzz.truth(mode)
+        assert kind == "holds", reason
+
+
 @pytest.mark.parametrize("slope", [20.9 * (1 + 1e-12), 20.9001, 28.0, 32.76 * (1 - 1e-12)])
 def test_friction_next_to_its_limits_keeps_its_digits(slope):
     flow = flows.RollWave(slope_deg=slope)
