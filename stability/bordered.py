@@ -6,6 +6,8 @@
 The interior is factorised as a band (LAPACK gbtrf); the border follows by block elimination.
 """
 
+from functools import cached_property
+
 import numpy as np
 from scipy.linalg import lapack
 from scipy.sparse import csr_array
@@ -34,8 +36,13 @@ class Bordered:
                          self._starts[1] + row * border + column - interior)
         place[below] = (self._starts[2] + (row - interior) * (interior + border) + column)[below]
         self._spread = csr_array((value, (place, part)), (self._starts[3], parts))
-        place, first = np.unique(place, return_index=True)
-        self._entries = place, row[first], column[first]
+        self._places = place, row, column
+
+    @cached_property
+    def _entries(self):
+        """Place, row and column of every entry, each once."""
+        place, first = np.unique(self._places[0], return_index=True)
+        return place, self._places[1][first], self._places[2][first]
 
     def sum(self, weights):
         """Return the sum of the parts times weights (parts,), and the scales of its rows and columns, or None.
@@ -44,7 +51,7 @@ class Bordered:
         column near 1: an unknown that is tiny beside the others would else be found with few digits of its own.
         """
         flat = self._spread @ weights
-        if not np.abs(flat).max(initial=0) > _UNEVEN:
+        if not np.abs(flat.view(float)).max(initial=0) > _UNEVEN:
             return flat, None
         place, row, column = self._entries
         size = np.abs(flat[place])

@@ -178,10 +178,7 @@ def _leading(solver, wavenumbers):
     try:
         halves = [solver if half == solver.flow else Solver(half, solver.tolerance, solver.degrees[-1])
                   for half in solver.flow.halves()]
-        dense, degree = [], None
-        for half in halves:
-            rates, degree = converged_rates(half, k, 1, degree)
-            dense.append((rates, degree))
+        dense = [converged_rates(half, k, 1) for half in halves]
         best = max(rates[0].real for rates, _ in dense)
         rivals = [(polished(half, k, 1, *found)[0], half) for half, found in zip(halves, dense, strict=True)
                   if found[0][0].real > best - _CLOSE * abs(found[0][0])]

@@ -31,7 +31,7 @@ _LARGEST = 1300  # unknowns of a dense problem
 _SPARE = 10  # eigenvalues beside twice the number asked for that are tried
 _SHIFT = 0.01 - 0.013j  # tried when the pencil is singular at rate 0
 _SINGULAR = 1e14  # ratio of the two largest theta above which rate 0 is taken for an eigenvalue
-_FIRST = 4  # rung of the degrees at which a look starts
+_FIRST = 6  # rung of the degrees at which a look starts
 _SMALL = 10  # degree of the pencil whose finite eigenvalues are counted
 
 
@@ -188,14 +188,10 @@ def polished(solver, k, count, rates, degree):
     return sorted(found, key=lambda mode: -mode.growth_rate)
 
 
-def converged_rates(solver, k, count, like=None):
-    """Finite rates at the first degree at which the leading `count` agree with the degree before, and that degree.
-
-    `like` is the degree at which the rates of a similar flow converged: no need to look much lower.
-    """
+def converged_rates(solver, k, count):
+    """Finite rates at the first degree at which the leading `count` agree with the degree before, and that degree."""
     previous = None
-    first = max(_FIRST, solver.degrees.index(like) - 2) if like else _FIRST
-    for degree in dense_degrees(solver, first, 2):
+    for degree in dense_degrees(solver, _FIRST, 2):
         rates = finite_rates(solver, degree, solver.symbols(k))
         if previous is not None:
             lead = rates[:count]
