@@ -32,7 +32,6 @@ THESIS_DELTA = 0.01  # grain size over depth of the layer
 THESIS_DEPTH = 100.0  # depth of the fluid times k, where it stands for an unbounded fluid
 SEARCH = (1e-2, 100.0)  # default range of k for the fastest growing wavenumber
 
-INTERRUPTED = "interrupted"
 
 _RESIDUALS = (1e-4, 1e-6, 1e-7, 1e-8)  # tolerances of solve_bvp tried in turn
 _NODES = 20_000
@@ -381,26 +380,31 @@ def _columns(index, count, real):
     return [index] if real else [index, count // 2 + index]
 
 
-@one_thread
-def continue_in_k(flow, k, *, tolerance=TOLERANCE, residual=None, guess=None, setting=None, report=None):
+def continue_in_k(flow, k, *, tolerance=TOLERANCE, residual=None, guess=None, setting=None):
     """Follow the surface mode of a flow through wavenumbers k by solve_bvp: a `Continuation`.
 
     Each point is refined until its error is below `tolerance` |sigma|, or solved once with solve_bvp's
     tolerance `residual`. `guess` is sigma at the smallest k, for flows without a long-wave limit. `setting` maps k to
-    the flow that is solved (`thesis_setting`). `report(done, total)` is called after each point.
+    the flow that is solved (`thesis_setting`).
     """
+    return _joined(steps_in_k(flow, k, tolerance=tolerance, residual=residual, guess=guess, setting=setting))
+
+
+def steps_in_k(flow, k, *, tolerance=TOLERANCE, residual=None, guess=None, setting=None):
+    """Yield the result of `continue_in_k` point by point, and at last what is lost."""
     setting = setting or (lambda k: flow)
     wavenumbers = np.unique(check_wavenumbers(k))
     effort = _effort(tolerance, residual)
     try:
         walk = _Walk(lambda k: (setting(k), k), *_start(setting, wavenumbers[0], guess, effort[1][0]), effort)
     except ModeLost as reason:
-        return Continuation((), dict.fromkeys(wavenumbers.tolist(), str(reason)))
-    return _walk_through(walk, wavenumbers.tolist(), report)
+        yield Continuation((), dict.fromkeys(wavenumbers.tolist(), str(reason)))
+    else:
+        yield from _walk_through(walk, wavenumbers.tolist())
 
 
 @one_thread
-def continue_in(flow, name, values, k, *, tolerance=TOLERANCE, residual=None, report=None):
+def continue_in(flow, name, values, k, *, tolerance=TOLERANCE, residual=None):
     """Follow the surface mode at fixed k through a monotone sequence of positive values of a parameter.
 
     The first point is reached from the long-wave limit. Arguments and result as for `continue_in_k`; `lost`
@@ -415,7 +419,7 @@ def continue_in(flow, name, values, k, *, tolerance=TOLERANCE, residual=None, re
     except ModeLost as reason:
         return Continuation((), dict.fromkeys(values, str(reason)))
     walk.move(lambda value: (replace(flow, **{name: value}), k), values[0])
-    return _walk_through(walk, values, report)
+    return _joined(_walk_through(walk, values))
 
 
 @dataclass(frozen=True)
@@ -466,6 +470,7 @@ def _effort(tolerance, residual):
     return (np.inf, (residual,)) if residual else (tolerance, _RESIDUALS)
 
 
+@one_thread
 def _start(setting, k, guess, residual):
     """First solution and its k: at a k so small that the long-wave limit holds, or at the guess."""
     for _ in range(12):
@@ -491,18 +496,19 @@ def _cold(flow, k, sigma, residual):
     return rough and _solve(problem, rough.mesh, rough.fields(rough.mesh), rough.parameters, residual)
 
 
-def _walk_through(walk, values, report):
-    points, lost = [], {}
-    try:
-        for value in values:
-            points.append(walk.point(value))
-            if report:
-                report(len(points), len(values))
-    except ModeLost as reason:
-        lost = dict.fromkeys(values[len(points):], str(reason))
-    except KeyboardInterrupt:
-        lost = dict.fromkeys(values[len(points):], INTERRUPTED)
-    return Continuation(tuple(points), lost)
+def _walk_through(walk, values):
+    for done, value in enumerate(values):
+        try:
+            yield Continuation((walk.point(value),), {})
+        except ModeLost as reason:
+            yield Continuation((), dict.fromkeys(values[done:], str(reason)))
+            return
+
+
+def _joined(parts):
+    parts = list(parts)
+    return Continuation(tuple(point for part in parts for point in part.points),
+                        {value: reason for part in parts for value, reason in part.lost.items()})
 
 
 class _Walk:
@@ -531,6 +537,7 @@ class _Walk:
             self._advance(value if abs(gap) <= self.step else self.value * exp(np.sign(gap) * self.step))
         raise self._lost(f"{_STEPS} steps did not reach {value:g}")
 
+    @one_thread
     def point(self, value):
         """Reach the value, then tighten solve_bvp's tolerance until halving the mesh moves sigma little enough."""
         self.to(value)

@@ -1,13 +1,14 @@
 """Dispersion relations sigma(k): the surface mode followed from its long-wave limit, or the most unstable mode."""
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from .checks import check_options, check_wavenumbers
-from .errors import ModeLost
+from .errors import INTERRUPTED, ModeLost
 from .flows.base import check_flow
 from .mode import DEGREES, TOLERANCE, Mode, Solver, check_accuracy, require
 from .output import Row
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 MODES = ("surface", "leading", "most-unstable")
 
 _ROUGH = 1e-4  # tolerance of the way to the first wavenumber
+_PORTION = 200  # wavenumbers followed before what is done is handed over
 _CLOSE = 1e-2  # relative distance of leading rates within which both are computed properly
 
 
@@ -99,7 +101,7 @@ class DispersionRelation(Record):
         return columns
 
     def notes(self) -> list[str]:
-        notes = sorted({str(collision) for collision in self.collisions} | set(self.lost.values()))
+        notes = sorted({str(collision) for collision in self.collisions} | set(self.lost.values()) - {INTERRUPTED})
         return [*notes, f"{self.flow}: {self._outgrown}"] if self._outgrown else notes
 
     def about(self) -> dict[str, Any]:
@@ -123,10 +125,9 @@ class DispersionRelation(Record):
         refused = mode is None or self.mode == "most-unstable" and mode.status != "resolved"
         numbers = {name: None if refused else getattr(mode, name) for name in ("growth_rate", "phase_speed", "error")}
         return {"k": k, **numbers, resolution: getattr(mode, resolution, None),
-                "status": mode.status if mode else "lost"}
+                "status": mode.status if mode else INTERRUPTED if self.lost.get(k) == INTERRUPTED else "lost"}
 
 
-@one_thread
 def dispersion(flow: "Flow", k: "ArrayLike", mode: str | None = None, *, tolerance: float = TOLERANCE,
                max_degree: int = DEGREES[-1], strict: bool = True) -> DispersionRelation:
     """Return the `DispersionRelation` of a flow at wavenumbers k, a number or a sequence in any order.
@@ -136,26 +137,47 @@ def dispersion(flow: "Flow", k: "ArrayLike", mode: str | None = None, *, toleran
     "most-unstable" takes the least stable mode of the spectrum at each k. `tolerance` bounds error / |sigma|.
     Raises NotResolved or ModeLost; with strict=False the record says in `status` and `lost` what failed.
     """
+    parts = list(dispersion_parts(flow, k, mode, tolerance=tolerance, max_degree=max_degree))
+    relation = joined(parts, check_wavenumbers(k).tolist())
+    if strict:
+        for reason in relation.lost.values():
+            raise ModeLost(reason)
+        for point in relation.modes:
+            require(point)
+    return relation
+
+
+def dispersion_parts(flow: "Flow", k: "ArrayLike", mode: str | None = None, *, tolerance: float = TOLERANCE,
+                     max_degree: int = DEGREES[-1]) -> Iterator[DispersionRelation]:
+    """Yield the relation of `dispersion`, not strict, a portion of k at a time: `joined` puts them together."""
     check_flow(flow)
     wavenumbers = check_wavenumbers(k)
     mode = default_mode(flow) if mode is None else check_options("mode", mode, MODES)
     tolerance, max_degree = check_accuracy(tolerance, max_degree)
-    solver = Solver(flow, tolerance, max_degree)
-    solver.prepare(wavenumbers)
     walk = {"surface": _surface, "leading": _leading, "most-unstable": _most_unstable}[mode]
-    found, lost, collisions = walk(solver, np.unique(wavenumbers))
-    if strict:
-        for reason in lost.values():
-            raise ModeLost(reason)
-        for point in found.values():
-            require(point)
-    return DispersionRelation(flow, mode, tuple(found[value] for value in wavenumbers.tolist() if value in found), lost,
-                              tuple(collisions), tuple(wavenumbers.tolist()))
+    portions, step = walk(Solver(flow, tolerance, max_degree), np.unique(wavenumbers)), one_thread(next)
+    while portion := step(portions, None):
+        found, lost, collisions = portion
+        yield DispersionRelation(flow, mode, tuple(found.values()), lost, tuple(collisions))
+
+
+def joined(parts: list[DispersionRelation], asked: list[float]) -> DispersionRelation:
+    """Return the parts as one relation at the wavenumbers `asked`, in that order."""
+    found = {mode.k: mode for part in parts for mode in part.modes}
+    lost: dict[float, str] = {}
+    for part in parts:
+        lost |= {k: reason for k, reason in part.lost.items() if k not in found and k not in lost}
+    collisions = tuple(collision for part in parts for collision in part.collisions)
+    return replace(parts[0], modes=tuple(found[k] for k in asked if k in found), lost=lost, collisions=collisions,
+                   asked=tuple(asked))
 
 
 def default_mode(flow: "Flow") -> str:
     """The mode that a dispersion relation follows unless told otherwise."""
     return "surface" if flow.has_surface_mode() else "leading"
+
+
+# Each walk yields ({k: mode}, {k: why it is lost}, collisions) of a few wavenumbers at a time.
 
 
 def _surface(solver, wavenumbers):
@@ -165,11 +187,13 @@ def _surface(solver, wavenumbers):
     try:
         way = follow(rough, surface_mode(rough, k), [k])
         if way.lost or way.collisions:  # a close look is needed
-            return _followed(solver, wavenumbers, surface_mode(solver, k))
-        (near,) = way.modes
-        return _followed(solver, wavenumbers, solver.solve(k, near.rate, (near.degree, near.x, near.y)))
+            first = surface_mode(solver, k)
+        else:
+            (near,) = way.modes
+            first = solver.solve(k, near.rate, (near.degree, near.x, near.y))
+        yield from _followed(solver, wavenumbers, first)
     except ModeLost as reason:
-        return {}, dict.fromkeys(wavenumbers.tolist(), str(reason)), ()
+        yield {}, dict.fromkeys(wavenumbers.tolist(), str(reason)), ()
 
 
 def _leading(solver, wavenumbers):
@@ -183,23 +207,28 @@ def _leading(solver, wavenumbers):
         rivals = [(polished(half, k, 1, *found)[0], half) for half, found in zip(halves, dense, strict=True)
                   if found[0][0].real > best - _CLOSE * abs(found[0][0])]
         first, solver = max(rivals, key=lambda rival: rival[0].growth_rate)
-        solver.prepare(wavenumbers)
-        return _followed(solver, wavenumbers, first)
+        yield from _followed(solver, wavenumbers, first)
     except ModeLost as reason:
-        return {}, dict.fromkeys(wavenumbers.tolist(), str(reason)), ()
+        yield {}, dict.fromkeys(wavenumbers.tolist(), str(reason)), ()
 
 
-def _followed(solver, wavenumbers, first):
-    path = follow(solver, first, wavenumbers)
-    found = {mode.k: mode for mode in path.modes}
-    return found, {k: path.lost for k in wavenumbers.tolist() if k not in found}, path.collisions
+def _followed(solver, wavenumbers, start):
+    for first in range(0, len(wavenumbers), _PORTION):
+        portion = wavenumbers[first: first + _PORTION]
+        solver.prepare(portion)
+        path = follow(solver, start, portion)
+        found = {mode.k: mode for mode in path.modes}
+        yield found, {k: path.lost for k in portion.tolist() if k not in found}, path.collisions
+        if path.lost:
+            yield {}, dict.fromkeys(wavenumbers[first + _PORTION:].tolist(), path.lost), ()
+            return
+        start = path.modes[-1]
 
 
 def _most_unstable(solver, wavenumbers):
-    found, lost = {}, {}
     for k in wavenumbers.tolist():
         try:
-            (found[k],) = leading_modes(solver, k, 1)
+            (mode,) = leading_modes(solver, k, 1)
+            yield {k: mode}, {}, ()
         except ModeLost as reason:
-            lost[k] = str(reason)
-    return found, lost, ()
+            yield {}, {k: str(reason)}, ()

@@ -161,10 +161,44 @@ def test_an_interrupted_run_leaves_the_old_file(tmp_path, capsys, monkeypatch):
     def interrupt(*arguments, **options):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("stability.verbs.dispersion.dispersion", interrupt)
+    monkeypatch.setattr("stability.relation.follow", interrupt)
     status, _, err = run(capsys, "dispersion", "vortex", "--k", "1", "-o", str(target))
     assert (status, err) == (130, "stability: interrupted\n")
     assert [path.read_text() for path in tmp_path.iterdir()] == ["old"]
+
+
+SWEEPS = [
+    ("dispersion", "dune", "--k", "4,1,2,3"),
+    ("dispersion", "vortex", "--k", "1,2,3,4", "--mode", "most-unstable"),
+    ("dispersion", "vortex", "--k", "1,2,3,4", "--method", "bvp"),
+    ("spectrum", "vortex", "--k", "1,2,3,4", "--modes", "1"),
+    ("kmax", "dune", "--over", "Re=1,2,3,4"),
+    ("neutral", "film", "--vary", "Re", "--over", "We=1,2,3,4"),
+    ("wellposed", "vortex", "--k", "1,2,3,4"),
+]
+
+
+@pytest.mark.parametrize("question", SWEEPS, ids=" ".join)
+def test_an_interrupted_sweep_keeps_what_is_done(capsys, monkeypatch, question):
+    def press_ctrl_c(bar, done, total):
+        if done == 2:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr("stability.relation._PORTION", 2)
+    whole = json.loads(run(capsys, *question, "--json")[1])["rows"]
+    monkeypatch.setattr("stability.verbs.progress.Bar.__call__", press_ctrl_c)
+    status, out, err = run(capsys, *question, "--json")
+    rows = json.loads(out)["rows"]
+    done = [row for row in rows if row["status"] != "interrupted"]
+    assert status == 130
+    assert err == "stability: interrupted: 2 of 4 rows are not computed\n"
+    assert len(rows) == 4
+    assert done == [one for one, row in zip(whole, rows, strict=True) if row in done]
+    assert [row["status"] for row in done] == ["resolved"] * 2
+    swept = "k" if "--k" in question else question[-1].partition("=")[0]
+    assert [row[swept] for row in rows] == [row[swept] for row in whole]
+    assert all(value is None for row in rows if row not in done for name, value in row.items()
+               if name not in (swept, "status", "maxima"))
 
 
 def stability(*arguments, **options):

@@ -10,7 +10,6 @@ import references
 from stability import continuation, dispersion, flows, k_max
 from stability.cli import main
 from stability.continuation import (
-    INTERRUPTED,
     RegularisedVortex,
     bounded_maximum,
     continue_in,
@@ -132,16 +131,6 @@ def test_thesis_setting_cuts_the_fluid_of_dunes_only_if_unbounded():
         thesis_setting(flows.Dune(), 1e-3)
     with pytest.raises(ParameterError, match="computes vortex and dune"):
         thesis_setting(flows.Film())
-
-
-def test_interrupt_keeps_what_is_done():
-    def report(done, total):
-        if done == 2:
-            raise KeyboardInterrupt
-
-    found = continue_in_k(flows.Dune(), [0.1, 0.2, 0.3, 0.4], report=report)
-    assert found.k.tolist() == [0.1, 0.2]
-    assert found.lost == {0.3: INTERRUPTED, 0.4: INTERRUPTED}
 
 
 def test_command(capsys):

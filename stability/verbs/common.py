@@ -5,15 +5,17 @@ from contextlib import ExitStack
 from dataclasses import fields, replace
 from difflib import get_close_matches
 
-from ..errors import ParameterError
+from ..errors import INTERRUPTED, ParameterError
 from ..flows import FLOWS
 from ..flows.base import allowed
 from ..mode import DEGREES, TOLERANCE, check_accuracy
 from ..output import header_of, render, whole_file, write
 from ..specs import parse_spec
+from .progress import Bar
 
 SPEC = "a number, a list a,b,c, or a range a:b:n (log-spaced) or a:b:n:lin"
 RESOLVED = "resolved"  # the status of a good row begins with it
+INTERRUPTED_STATUS = 130  # of the command
 _DONE = (RESOLVED, "no derivative")  # or with this, where there is none to compute
 _PLOTS = (".png", ".pdf", ".svg")
 
@@ -108,22 +110,40 @@ def report(arguments, flow, compute, swept=()):
             from ..plots import draw  # matplotlib takes longer to import than most results to compute
 
             draw(result, plot)
-        failed = [row for row in rows if not row["status"].startswith(_DONE)]
+        missing = [row for row in rows if row["status"] == INTERRUPTED]
+        failed = [row for row in rows if not row["status"].startswith((*_DONE, INTERRUPTED))]
         if not arguments.quiet:
             for note in notes:
                 print(f"stability: {note}", file=sys.stderr)
             if failed:
                 print(f"stability: {len(failed)} of {len(rows)} rows are not resolved: see status", file=sys.stderr)
+            if missing:
+                print(f"stability: interrupted: {len(missing)} of {len(rows)} rows are not computed", file=sys.stderr)
         if arguments.form == "netcdf":
             result.to_netcdf(out)
         else:
             write(render(arguments.form, header, rows), out)
-    return 3 if failed else 0
+    return INTERRUPTED_STATUS if missing else 3 if failed else 0
 
 
-def progress(arguments, done, total):
-    if sys.stderr.isatty() and not arguments.quiet:
-        print(f"\r{done}/{total}", end="" if done < total else "\r\033[K", file=sys.stderr, flush=True)
+def collect(arguments, results, total, rest, size=lambda result: 1):
+    """Return the results of a sweep of `total` points as a list, `size` points each, with progress on the way.
+
+    What is done is kept after Ctrl-C: `rest(points done)` then gives what stands for the others.
+    """
+    found, done, bar = [], 0, Bar(arguments.quiet)
+    try:
+        for result in results:
+            found.append(result)
+            done += size(result)
+            bar(done, total)
+    except KeyboardInterrupt:
+        if not found:
+            raise
+        found += rest(done)
+    finally:
+        bar.clear()
+    return found
 
 
 def _plot_file(arguments, stack):

@@ -2,7 +2,8 @@
 
 from ..errors import ParameterError
 from ..specs import parse_spec
-from .common import RESOLVED, add_verb, flow_of, progress, report
+from .common import RESOLVED, add_verb, flow_of, report
+from .progress import Bar
 
 
 def add(verbs):
@@ -23,7 +24,11 @@ def _run(arguments):
     def compute():
         from ..compare import compare
 
-        found = compare(flow, float(k[0]), report=lambda done, total: progress(arguments, done, total))
+        bar = Bar(arguments.quiet)
+        try:
+            found = compare(flow, float(k[0]), report=bar)
+        finally:
+            bar.clear()
         known = found.reference
         notes = [f"reference: sigma = {known.sigma:.15g}, {known.source}",
                  *(f"{method}, {setting}: no result" for method, setting in found.failed)]

@@ -1,10 +1,12 @@
 """stability dispersion: growth rate and phase speed over wavenumbers."""
 
-from ..errors import ParameterError
-from ..relation import MODES, DispersionRelation, default_mode, dispersion
+from dataclasses import replace
+
+from ..errors import INTERRUPTED, ParameterError
+from ..relation import MODES, DispersionRelation, default_mode, dispersion_parts, joined
 from ..specs import parse_spec
-from .common import add_verb, flow_of, k_option, options_of, progress, report
-from .methods import INTERRUPTED, INTERRUPTED_STATUS, method_of, method_options
+from .common import add_verb, collect, flow_of, k_option, options_of, report
+from .methods import method_of, method_options
 
 
 def add(verbs):
@@ -25,28 +27,23 @@ def _run(arguments):
     if arguments.mode not in MODES:
         raise ParameterError(f"--mode: must be one of {', '.join(MODES)} (got {arguments.mode!r})")
     bvp = method_of(arguments, flow, options["tolerance"])
-    if not bvp:
-        return report(arguments, flow, lambda: _collocation(flow, wavenumbers, arguments.mode, options))
-    if arguments.mode != MODES[0]:
+    if bvp and arguments.mode != MODES[0]:
         raise ParameterError(f"--mode {arguments.mode}: --method {arguments.method} follows the surface mode only")
-    lost = {}
-    status = report(arguments, flow, lambda: _continuation(arguments, flow, wavenumbers, bvp, lost))
-    return INTERRUPTED_STATUS if INTERRUPTED in lost.values() else status
+
+    def compute():
+        parts = _continued(flow, wavenumbers, **bvp) if bvp else \
+            dispersion_parts(flow, wavenumbers, arguments.mode, **options)
+        missing = DispersionRelation(flow, arguments.mode, (), dict.fromkeys(wavenumbers.tolist(), INTERRUPTED), ())
+        found = collect(arguments, parts, len(wavenumbers), lambda done: [missing], lambda part: len(part.modes))
+        relation = replace(joined(found, wavenumbers.tolist()), method=arguments.method)
+        return relation.rows(), relation, relation.notes()
+
+    return report(arguments, flow, compute)
 
 
-def _collocation(flow, wavenumbers, mode, options):
-    relation = dispersion(flow, wavenumbers, mode, strict=False, **options)
-    return relation.rows(), relation, relation.notes()
+def _continued(flow, wavenumbers, **bvp):
+    """The surface mode by continuation, point by point."""
+    from ..continuation import steps_in_k
 
-
-def _continuation(arguments, flow, wavenumbers, bvp, lost):
-    """Rows, result and notes of a continuation; fills `lost`."""
-    from ..continuation import continue_in_k
-
-    found = continue_in_k(flow, wavenumbers, report=lambda done, total: progress(arguments, done, total), **bvp)
-    lost.update(found.lost)
-    points = {point.k: point for point in found.points}
-    asked = tuple(wavenumbers.tolist())
-    relation = DispersionRelation(flow, MODES[0], tuple(points[k] for k in asked if k in points), found.lost, (), asked,
-                                  arguments.method)
-    return relation.rows(), relation, relation.notes()
+    for part in steps_in_k(flow, wavenumbers, **bvp):
+        yield DispersionRelation(flow, MODES[0], part.points, part.lost, ())

@@ -1,10 +1,10 @@
 """stability kmax: the fastest growing wavenumber, over a parameter."""
 
-from ..errors import StabilityError
+from ..errors import INTERRUPTED, StabilityError
 from ..optimum import Optima, Optimum, k_max_sweep
 from ..wellposed import flag_outgrown
-from .common import SPEC, add_verb, flow_of, options_of, progress, report, sweep_of
-from .methods import INTERRUPTED, INTERRUPTED_STATUS, method_of, method_options
+from .common import SPEC, add_verb, collect, flow_of, options_of, report, sweep_of
+from .methods import method_of, method_options
 
 
 def add(verbs):
@@ -21,21 +21,14 @@ def _run(arguments):
     name, sweep = sweep_of(arguments, flow)
     bvps = [method_of(arguments, one, options["tolerance"]) for one in sweep]
 
-    found = []
-
     def compute():
         optima = flag_outgrown(k_max_sweep(sweep, **options)) if bvps[0] is None else map(_bounded, sweep, bvps)
-        try:
-            for optimum in optima:
-                found.append(optimum)
-                progress(arguments, len(found), len(sweep))
-        except KeyboardInterrupt:
-            found.extend(Optimum(one, (), INTERRUPTED) for one in sweep[len(found):])
-        sweep_found = Optima(flow, name, tuple(found), arguments.method)
-        return sweep_found.rows(), sweep_found, []
+        found = collect(arguments, optima, len(sweep),
+                        lambda done: [Optimum(one, (), INTERRUPTED) for one in sweep[done:]])
+        whole = Optima(flow, name, tuple(found), arguments.method)
+        return whole.rows(), whole, []
 
-    status = report(arguments, flow, compute)
-    return INTERRUPTED_STATUS if found and found[-1].status == INTERRUPTED else status
+    return report(arguments, flow, compute)
 
 
 def _bounded(flow, bvp):

@@ -7,9 +7,8 @@ from ..checks import check_integer
 from ..errors import ParameterError
 from ..output import check_writable
 from ..specs import parse_spec
-from .common import SPEC, add_verb, check_plot, flow_of, options_of, report, swept_values
+from .common import INTERRUPTED_STATUS, SPEC, add_verb, check_plot, flow_of, options_of, report, swept_values
 from .critical import vary_option
-from .methods import INTERRUPTED_STATUS
 from .progress import Bar
 
 _FORMS = {".csv": "csv", ".json": "json", ".nc": "netcdf"}

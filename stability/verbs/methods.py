@@ -4,8 +4,6 @@ from ..errors import ParameterError
 from ..specs import parse_spec
 
 METHODS = ("collocation", "bvp", "bvp-thesis")
-INTERRUPTED = "interrupted"
-INTERRUPTED_STATUS = 130
 
 
 def method_options(verb):

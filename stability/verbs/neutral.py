@@ -1,8 +1,8 @@
 """stability neutral: where growth vanishes, over a second parameter or over wavenumbers."""
 
-from ..errors import ParameterError
+from ..errors import INTERRUPTED, ParameterError
 from ..specs import parse_spec
-from .common import SPEC, add_verb, flow_of, options_of, progress, report, sweep_of
+from .common import SPEC, add_verb, collect, flow_of, options_of, report, sweep_of
 from .critical import long_wave_option, vary_option
 
 
@@ -32,17 +32,15 @@ def _run(arguments):
 
 
 def _over(arguments, flow, vary, options):
-    from ..neutral import critical_sweep
+    from ..neutral import NeutralPoint, critical_sweep
 
     name, sweep = sweep_of(arguments, flow)
     if name == vary:
         raise ParameterError(f"--over: {name} is the parameter to solve for; sweep another one")
 
     def compute():
-        found = []
-        for point in critical_sweep(sweep, vary, long_wave=arguments.long_wave, **options):
-            found.append(point)
-            progress(arguments, len(found), len(sweep))
+        found = collect(arguments, critical_sweep(sweep, vary, long_wave=arguments.long_wave, **options), len(sweep),
+                        lambda done: [NeutralPoint(one, vary, *[None] * 5, INTERRUPTED) for one in sweep[done:]])
         return [{name: getattr(point.flow, name), **point.row()} for point in found], (name, found), []
 
     return report(arguments, flow, compute)

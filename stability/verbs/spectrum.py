@@ -1,10 +1,11 @@
 """stability spectrum: the least stable modes at one wavenumber."""
 
 from ..checks import check_integer
+from ..errors import INTERRUPTED
 from ..specs import parse_spec
 from ..spectra import MOST, spectrum
 from ..wellposed import notes_on
-from .common import add_verb, flow_of, k_option, options_of, report
+from .common import add_verb, collect, flow_of, k_option, options_of, report
 
 
 def add(verbs):
@@ -22,7 +23,10 @@ def _run(arguments):
     wavenumbers = parse_spec(arguments.k, "--k")
 
     def compute():
-        found = [spectrum(flow, k, count, strict=False, **options) for k in wavenumbers.tolist()]
-        return [row for one in found for row in one.rows()], found, notes_on(found)
+        spectra = (spectrum(flow, k, count, strict=False, **options) for k in wavenumbers.tolist())
+        found = collect(arguments, spectra, len(wavenumbers), lambda done: [])
+        rows = [row for one in found for row in one.rows()]
+        rows += [dict.fromkeys(rows[0]) | {"k": k, "status": INTERRUPTED} for k in wavenumbers.tolist()[len(found):]]
+        return rows, found, notes_on(found)
 
     return report(arguments, flow, compute)

@@ -1,9 +1,10 @@
 """stability wellposed: where a flow's own equations are ill posed, and how its fastest modes grow with k."""
 
 from ..checks import check_integer
+from ..errors import INTERRUPTED
 from ..specs import parse_spec
 from ..wellposed import growth_with_degree, well_posedness
-from .common import RESOLVED, add_verb, flow_of, report
+from .common import RESOLVED, add_verb, collect, flow_of, report
 
 _POINTS = "21"
 _WAVENUMBERS = "1:100:9"  # of the second panel of the figure
@@ -33,11 +34,17 @@ def _run(arguments):
         notes = [f"{flow}: {strip}" for strip in layers.strips]
         growth = ()
         if wavenumbers is not None or arguments.plot:
-            growth = growth_with_degree(flow, parse_spec(_WAVENUMBERS, "") if wavenumbers is None else wavenumbers)
-        rows = _layer_rows(well_posedness(flow, count)) if wavenumbers is None else [_growth_row(one) for one in growth]
+            growth = _growth(arguments, flow, parse_spec(_WAVENUMBERS, "") if wavenumbers is None else wavenumbers)
+        rows = _layer_rows(well_posedness(flow, count)) if wavenumbers is None else \
+            _growth_rows(growth, sorted(set(wavenumbers.tolist())))
         return rows, (layers, growth), notes
 
     return report(arguments, flow, compute)
+
+
+def _growth(arguments, flow, wavenumbers):
+    growth = (one for k in sorted(set(wavenumbers.tolist())) for one in growth_with_degree(flow, k))
+    return tuple(collect(arguments, growth, len(wavenumbers), lambda done: []))
 
 
 def _layer_rows(found):
@@ -45,6 +52,11 @@ def _layer_rows(found):
                   strict=True)
     return [{"layer": layer, "height": height, "C": C, "short_waves": growth, "ill_posed": "yes" if ill else "no",
              "status": RESOLVED} for layer, height, C, growth, ill in columns]
+
+
+def _growth_rows(growth, wavenumbers):
+    rows = [_growth_row(one) for one in growth]
+    return rows + [dict.fromkeys(rows[0]) | {"k": k, "status": INTERRUPTED} for k in wavenumbers[len(rows):]]
 
 
 def _growth_row(growth):
