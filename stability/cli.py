@@ -10,6 +10,7 @@ import sys
 from . import __version__
 from .errors import ParameterError, StabilityError
 from .verbs import VERBS
+from .verbs.common import nearest_flag
 
 
 def main(argv=None):
@@ -17,7 +18,9 @@ def main(argv=None):
     try:
         arguments, unknown = _parser().parse_known_args(argv)
         if unknown:
-            raise ParameterError(f"unknown option {unknown[0]!r}; see --help, and for parameters: stability flows FLOW")
+            kind = "option" if unknown[0].startswith("-") else "argument"
+            raise ParameterError(f"unknown {kind} {unknown[0]!r}{nearest_flag(arguments, unknown[0])}; "
+                                 "see --help, and for parameters: stability flows FLOW")
         return arguments.run(arguments)
     except ParameterError as reason:
         return _fail(reason, 2)
@@ -39,13 +42,22 @@ def _fail(reason, status):
 
 
 class _Parser(argparse.ArgumentParser):
+    """Errors as exceptions; examples in one line, to be copied."""
+
+    def __init__(self, **options):
+        super().__init__(formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False, **options)
+
     def error(self, message):
         raise ParameterError(f"{message} (see: {self.prog} --help)")
+
+    def exit(self, status=0, message=None):
+        sys.stdout.flush()  # of the help: where nobody reads it, say so in `main`
+        super().exit(status, message)
 
 
 def _parser():
     parser = _Parser(prog="stability", description="Linear stability of granular and viscous shear flows.",
-                     epilog="example: stability dispersion dune --shields 2 --k 1e-2:10:50", allow_abbrev=False)
+                     epilog="example: stability dispersion dune --shields 2 --k 1e-2:10:50")
     parser.add_argument("--version", action="version", version=f"stability {__version__}")
     verbs = parser.add_subparsers(metavar="VERB", required=True, parser_class=_Parser)
     for verb in VERBS:

@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import os
+import shutil
 import sys
 import tempfile
 from collections.abc import Collection, Iterator, Sequence
@@ -17,6 +18,9 @@ from . import __version__
 from .errors import ParameterError
 
 Row = dict[str, Any]
+_LAYOUTS = ((10, 2), (8, 2), (6, 2), (6, 1), (4, 1))  # digits and spaces between columns of a table, widest first
+_FEW = 4  # digits at which lists give way to their length
+_PREFIX = 100  # bytes of a file's name that its temporary file shows
 
 
 def header_of(flow: Any, method: str, notes: Sequence[str] = (), swept: Collection[str] = ()) -> dict[str, Any]:
@@ -26,16 +30,16 @@ def header_of(flow: Any, method: str, notes: Sequence[str] = (), swept: Collecti
     return {**header, "notes": list(notes)} if notes else header
 
 
-def render(form: str, header: dict[str, Any], rows: list[Row]) -> str:
+def render(form: str, header: dict[str, Any], rows: list[Row], width: int | None = None) -> str:
     """Return rows (dicts with the same keys) as text in the form "table", "csv" or "json".
 
-    `header` is that of `header_of`, and whatever else belongs to the whole result.
+    `header` is that of `header_of`, and whatever else belongs to the whole result; `width` is for `table`.
     """
     if form == "json":
         return json.dumps(_plain({**header, "rows": rows}), indent=1, allow_nan=False) + "\n"
     if form == "csv":
         return _csv(header, rows)
-    return table(rows)
+    return table(rows, width)
 
 
 def _plain(value):
@@ -61,24 +65,44 @@ def _csv(header, rows):
     return text.getvalue()
 
 
-def table(rows: list[Row]) -> str:
-    """Return rows as a table with aligned columns; at least one row."""
-    cells = [[_cell(key, value) for key, value in row.items()] for row in rows]
+def table(rows: list[Row], width: int | None = None) -> str:
+    """Return rows as a table with aligned columns; at least one row.
+
+    Where it is wider than `width`, digits, spaces and lists give way; a long status may still stand out.
+    """
+    for digits, gap in _LAYOUTS:
+        text = _table(rows, digits, gap)
+        longest = max(len(line) - max(len(str(row.get("status", ""))) - len("resolved"), 0)
+                      for line, row in zip(text.splitlines(), (rows[0], *rows), strict=True))
+        if width is None or longest <= width:
+            break
+    return text
+
+
+def terminal_width() -> int | None:
+    """Columns of the terminal that standard output is, None where it is none."""
+    return shutil.get_terminal_size().columns if sys.stdout.isatty() else None
+
+
+def _table(rows, digits, gap):
+    cells = [[_cell(key, value, digits) for key, value in row.items()] for row in rows]
     columns = list(zip(list(rows[0]), *cells, strict=True))
     widths = [max(len(cell) for cell in column) for column in columns]
     texts = [isinstance(value, str) for value in rows[0].values()]
     lines = zip(*([cell.ljust(width) if text else cell.rjust(width) for cell in column]
                   for column, width, text in zip(columns, widths, texts, strict=True)), strict=True)
-    return "".join("  ".join(line).rstrip() + "\n" for line in lines)
+    return "".join((" " * gap).join(line).rstrip() + "\n" for line in lines)
 
 
-def _cell(key, value):
+def _cell(key, value, digits):
     if value is None:
         return "-"
+    if isinstance(value, list) and digits <= _FEW:
+        return str(len(value))
     if isinstance(value, list):
         return " ".join(f"({k:.6g}, {growth:.4g})" for k, growth in value) or "-"
     if isinstance(value, float):
-        return f"{value:.1e}" if key == "error" else f"{value:.10g}"
+        return f"{value:.1e}" if key.endswith("error") else f"{value:.{digits}g}"
     return str(value)
 
 
@@ -89,30 +113,43 @@ def whole_file(path: str | os.PathLike[str], name: str) -> Iterator[Path]:
     Raises ParameterError, naming the option `name`, where the file cannot be written.
     """
     path = Path(path)
-    temporary = _temporary(path, name)
+    temporary = path if _is_stream(path) else _temporary(path, name)
     try:
         yield temporary
+        if temporary is path:
+            return
         if path.is_dir():
             raise ParameterError(f"{name}: cannot write {str(path)!r}: it is a directory")
         os.chmod(temporary, 0o666 & ~_umask())
-        os.replace(temporary, path)
+        os.replace(temporary, os.path.realpath(path))
     except OSError as reason:
         raise ParameterError(f"{name}: cannot write {str(path)!r}: {reason.strerror}") from None
     finally:
-        temporary.unlink(missing_ok=True)
+        if temporary is not path:
+            temporary.unlink(missing_ok=True)
 
 
 def check_writable(path: str | os.PathLike[str], name: str) -> None:
     """Raise the error that `whole_file` would raise, before the work is done."""
     path = Path(path)
+    if _is_stream(path):
+        return
     _temporary(path, name).unlink()
     if path.is_dir():
         raise ParameterError(f"{name}: cannot write {str(path)!r}: it is a directory")
 
 
+def _is_stream(path):
+    """Whether the path is a device or a pipe: written to directly, and never replaced."""
+    return path.exists() and not path.is_file() and not path.is_dir()
+
+
 def _temporary(path, name):
+    """An empty file beside the target of `path`, with the beginning of its name and its ending."""
+    target = Path(os.path.realpath(path))
+    start, ending = (os.fsencode(part)[:_PREFIX].decode(errors="ignore") for part in (target.name, path.suffix))
     try:
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name[:100]}.", suffix=path.suffix)
+        handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{start}.", suffix=ending)
     except OSError as reason:
         raise ParameterError(f"{name}: cannot write {str(path)!r}: {reason.strerror}") from None
     os.close(handle)

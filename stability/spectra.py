@@ -65,7 +65,7 @@ class Spectrum(Record):
         from .energy import condition_numbers
 
         numbers = condition_numbers(self.modes).tolist()
-        return [{**row, "condition": number, "status": row.pop("status")}
+        return [{**{name: row[name] for name in row if name != "status"}, "condition": number, "status": row["status"]}
                 for row, number in zip(self._summary(), numbers, strict=True)]
 
     def columns(self) -> dict[str, np.ndarray]:

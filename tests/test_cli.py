@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -13,8 +14,10 @@ import pytest
 
 from stability import __version__, dispersion, flows
 from stability.cli import main
+from stability.verbs import VERBS
 
 FULL = "/dev/full"
+SLOW = {"map", "compare"}  # verbs whose examples take long
 
 
 def run(capsys, *arguments):
@@ -85,6 +88,46 @@ def test_flows_lists_parameters_ranges_and_scales(capsys):
     assert "length: grain diameter d" in out
 
 
+# -- help -----------------------------------------------------------------------------------------------
+
+
+def helped(capsys, *arguments):
+    with pytest.raises(SystemExit) as ended:
+        main([*arguments, "--help"])
+    assert ended.value.code == 0
+    return capsys.readouterr().out
+
+
+@pytest.mark.parametrize("verb", [name.rpartition(".")[2] for name in (verb.__name__ for verb in VERBS)])
+def test_help_has_an_example_that_works(tmp_path, capsys, monkeypatch, verb):
+    text = helped(capsys, verb)
+    assert len(text.splitlines()) < 45
+    (example,) = re.findall("^example: stability (.*)$", text, re.MULTILINE)
+    assert example.split()[0] == verb
+    monkeypatch.chdir(tmp_path)
+    if verb not in SLOW:
+        assert run(capsys, *example.split())[0] in (0, 3)
+
+
+def test_help_lists_the_parameters_of_the_flow_that_is_named(capsys):
+    general, dune, film = (helped(capsys, "kmax", *flow) for flow in ((), ("dune",), ("film",)))
+    assert "--shields" not in general
+    assert "stability kmax FLOW --help" in general
+    assert "--shields" in dune
+    assert "Reynolds number of the fluid on the grain scale" in " ".join(dune.split())
+    assert "--shields" not in film
+    assert "Reynolds number of depth and surface speed" in " ".join(film.split())
+
+
+def test_a_nearby_parameter_is_suggested(capsys):
+    status, _, err = run(capsys, "dispersion", "dune", "--k", "1", "--shield=3")
+    assert status == 2
+    assert "unknown option '--shield=3' (did you mean '--shields'?)" in err
+
+
+# -- bad input ------------------------------------------------------------------------------------------
+
+
 BAD = [
     (("flows", "vrtex"), "unknown flow 'vrtex' (did you mean 'vortex'?)"),
     (("dispersion", "vrtex", "--k", "1"), "unknown flow 'vrtex'"),
@@ -143,6 +186,65 @@ def test_files_are_written_whole(tmp_path, capsys):
     assert len(json.loads(target.read_text())["rows"]) == 3
     assert picture.read_text().rstrip().endswith("</svg>")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a b é.json", "p.svg"]
+
+
+def test_the_ending_of_a_file_gives_its_form(tmp_path, capsys):
+    for name, start in (("a.csv", "# flow: vortex"), ("a.json", "{"), ("a.txt", "k  "), ("a", "k  ")):
+        assert run(capsys, "dispersion", "vortex", "--k", "1", "-o", str(tmp_path / name))[0] == 0
+        assert (tmp_path / name).read_text().startswith(start)
+    assert run(capsys, "dispersion", "vortex", "--k", "1", "--json", "-o", str(tmp_path / "a.csv"))[0] == 0
+    assert (tmp_path / "a.csv").read_text().startswith("{")
+
+
+@pytest.mark.parametrize("name", ["a b \u00e9.csv", "\u6c99" * 83 + ".csv", "x" * 251 + ".csv", "a." + "\u6c99" * 80])
+def test_any_name_that_the_system_takes(tmp_path, capsys, name):
+    folder = tmp_path / "\u6c99 dunes"
+    folder.mkdir()
+    picture = folder / (name.partition(".")[0][:60] + ".png")
+    status, _, err = run(capsys, "dispersion", "vortex", "--k", "1,2", "-o", str(folder / name), "--plot", str(picture))
+    assert (status, err) == (0, "")
+    dispersion(flows.Vortex(), [1.0]).to_netcdf(folder / name)
+    assert not [path for path in folder.iterdir() if path.name.startswith(".")]
+    assert picture.stat().st_size > 4000
+
+
+def test_a_link_stays_a_link(tmp_path, capsys):
+    (tmp_path / "far").mkdir()
+    target, link = tmp_path / "far" / "target.csv", tmp_path / "link.csv"
+    link.symlink_to(target)
+    assert run(capsys, "dispersion", "vortex", "--k", "1", "-o", str(link))[0] == 0
+    assert link.is_symlink()
+    assert target.read_text().startswith("# flow: vortex")
+
+
+def test_a_device_is_written_to_and_not_replaced(tmp_path, capsys):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    process = stability("dispersion", "vortex", "--k", "1", "-o", str(pipe))
+    assert pipe.read_text().startswith("k ")
+    assert process.communicate()[1] == ""
+    assert process.returncode == 0
+    assert pipe.is_fifo()
+
+
+@pytest.mark.skipif(not os.path.exists(FULL), reason="needs /dev/full")
+def test_a_result_that_fits_in_no_file_goes_to_standard_output(capsys):
+    status, out, err = run(capsys, "dispersion", "vortex", "--k", "1", "-o", FULL)
+    assert status == 2
+    assert out.splitlines()[1].endswith("resolved")
+    assert err == f"stability: -o: cannot write '{FULL}': No space left on device\n"
+
+
+def test_a_failing_picture_does_not_take_the_numbers_with_it(tmp_path, capsys, monkeypatch):
+    def no_space(result, path):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("stability.plots.draw", no_space)
+    target, picture = tmp_path / "a.csv", tmp_path / "a.png"
+    status, _, err = run(capsys, "dispersion", "vortex", "--k", "1", "-o", str(target), "--plot", str(picture))
+    assert (status, err) == (2, f"stability: --plot: cannot write '{picture}': No space left on device\n")
+    assert [path.name for path in tmp_path.iterdir()] == ["a.csv"]
+    assert "resolved" in target.read_text()
 
 
 @pytest.mark.parametrize("ending", ["png", "pdf", "svg"])
@@ -235,8 +337,10 @@ def test_ctrl_c_stops_a_sweep_at_once():
 
 
 def test_light_verbs_import_no_heavy_packages():
+    """Beyond what scipy.linalg imports itself: in older versions scipy.sparse.linalg."""
     heavy = ["sympy", "matplotlib", "scipy.special", "scipy.integrate", "scipy.sparse.linalg"]
-    code = ("import sys; from stability.cli import main; main(['dispersion', 'vortex', '--k', '1', '--quiet']); "
-            f"print([name for name in {heavy} if name in sys.modules])")
+    code = ("import sys, scipy.linalg; before = set(sys.modules); "
+            "from stability.cli import main; main(['dispersion', 'vortex', '--k', '1', '--quiet']); "
+            f"print([name for name in {heavy} if name in set(sys.modules) - before])")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.endswith("[]\n")

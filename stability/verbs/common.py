@@ -1,15 +1,16 @@
 """What the verbs share: flows and their flags, common options, and the report of a result."""
 
+import argparse
 import sys
-from contextlib import ExitStack
 from dataclasses import fields, replace
 from difflib import get_close_matches
+from pathlib import Path
 
 from ..errors import INTERRUPTED, ParameterError
 from ..flows import FLOWS
 from ..flows.base import allowed
 from ..mode import DEGREES, TOLERANCE, check_accuracy
-from ..output import header_of, render, whole_file, write
+from ..output import check_writable, header_of, render, terminal_width, whole_file, write
 from ..specs import parse_spec
 from .progress import Bar
 
@@ -17,37 +18,66 @@ SPEC = "a number, a list a,b,c, or a range a:b:n (log-spaced) or a:b:n:lin"
 RESOLVED = "resolved"  # the status of a good row begins with it
 INTERRUPTED_STATUS = 130  # of the command
 _DONE = (RESOLVED, "no derivative")  # or with this, where there is none to compute
+_FORMS = {".csv": "csv", ".json": "json"}  # that the ending of a file stands for
 _PLOTS = (".png", ".pdf", ".svg")
 
 
 def add_verb(verbs, name, run, summary, example, *options):
     """Add a verb that takes a flow, its parameters, the common options and whatever `options` add."""
     verb = verbs.add_parser(name, help=summary, description=summary[0].upper() + summary[1:] + ".",
-                            epilog=f"example: {example}", allow_abbrev=False)
+                            epilog=f"example: {example}", add_help=False)
     verb.add_argument("flow", metavar="FLOW", help=f"one of {', '.join(FLOWS)}")
     for option in options:
         option(verb)
-    for flow in FLOWS.values():
-        group = verb.add_argument_group(f"parameters of {flow.name}")
-        for item in fields(flow):
-            if flag(item) not in verb._option_string_actions:
-                group.add_argument(flag(item), dest=f"parameter {item.name}", metavar="V",
-                                   help=f"{item.metadata['meaning']}; {allowed(item.metadata)}, default {item.default}")
     verb.add_argument("--tolerance", metavar="T", default=str(TOLERANCE),
                       help="relative error of sigma accepted as resolved")
     verb.add_argument("--max-degree", metavar="N", default=str(DEGREES[-1]), help="largest Chebyshev degree tried")
     form = verb.add_mutually_exclusive_group()
     form.add_argument("--csv", dest="form", action="store_const", const="csv", help="comma-separated values")
     form.add_argument("--json", dest="form", action="store_const", const="json", help="JSON")
-    verb.add_argument("-o", "--output", metavar="FILE", help="write there instead of standard output")
+    verb.add_argument("-o", "--output", metavar="FILE",
+                      help="write there instead of standard output; .csv and .json in that form")
     verb.add_argument("--plot", metavar="FILE", help="draw the result: .png, .pdf or .svg")
     verb.add_argument("--quiet", action="store_true", help="no progress and no warnings on standard error")
-    verb.set_defaults(run=run, form="table")
+    verb.add_argument("-h", "--help", action=_Help, help="show this help and exit")
+    verb.set_defaults(run=run, form="table", parameters=_add_parameters(verb))
+
+
+class _Help(argparse.Action):
+    """Print the help of a verb, with the parameters of the flow that has been named before, if any."""
+
+    def __init__(self, option_strings, dest, help):
+        super().__init__(option_strings, argparse.SUPPRESS, nargs=0, default=argparse.SUPPRESS, help=help)
+
+    def __call__(self, parser, namespace, values, option_string=None):
+        flow, group = FLOWS.get(namespace.flow), namespace.parameters
+        if flow:
+            texts = {flag(item): f"{item.metadata['meaning']}; {allowed(item.metadata)}, default {item.default}"
+                     for item in fields(flow)}
+            group.title, group.description = f"parameters of {flow.name}", flow.title
+            for action in group._group_actions:
+                action.help = texts.get(action.option_strings[0], argparse.SUPPRESS)
+        parser.print_help()
+        parser.exit()
+
+
+def _add_parameters(verb):
+    """Add a flag for every parameter of every flow, and return their group; `_Help` shows those of one flow."""
+    group = verb.add_argument_group("parameters of the flow", f"listed by: {verb.prog} FLOW --help")
+    for name in dict.fromkeys(flag(item) for flow in FLOWS.values() for item in fields(flow)):
+        group.add_argument(name, dest=f"parameter {name[2:].replace('-', '_')}", metavar="V", help=argparse.SUPPRESS)
+    return group
 
 
 def flag(item):
     """Command-line flag of a parameter."""
     return "--" + item.name.replace("_", "-")
+
+
+def nearest_flag(arguments, unknown):
+    """A hint at the parameter that an unknown option may stand for."""
+    flow = FLOWS.get(getattr(arguments, "flow", None))
+    return _nearest(unknown.partition("=")[0], [flag(item) for item in fields(flow)] if flow else ())
 
 
 def k_option(verb):
@@ -101,29 +131,54 @@ def report(arguments, flow, compute, swept=()):
 
     The header leaves out the parameters that are `swept`.
     """
-    with ExitStack() as stack:
-        out = stack.enter_context(whole_file(arguments.output, "-o")) if arguments.output else None
-        plot = _plot_file(arguments, stack)
-        rows, result, notes = compute()
-        header = header_of(flow, getattr(arguments, "method", "collocation"), notes, swept)
-        if plot:
-            from ..plots import draw  # matplotlib takes longer to import than most results to compute
+    check_files(arguments)
+    rows, result, notes = compute()
+    missing = [row for row in rows if row["status"] == INTERRUPTED]
+    failed = [row for row in rows if not row["status"].startswith((*_DONE, INTERRUPTED))]
+    if not arguments.quiet:
+        for note in notes:
+            print(f"stability: {note}", file=sys.stderr)
+        if failed:
+            print(f"stability: {len(failed)} of {len(rows)} rows are not resolved: see status", file=sys.stderr)
+        if missing:
+            print(f"stability: interrupted: {len(missing)} of {len(rows)} rows are not computed", file=sys.stderr)
+    header = header_of(flow, getattr(arguments, "method", "collocation"), notes, swept)
+    _deliver(arguments, header, rows, result)
+    if arguments.plot:
+        from ..plots import draw  # matplotlib takes longer to import than most results to compute
 
-            draw(result, plot)
-        missing = [row for row in rows if row["status"] == INTERRUPTED]
-        failed = [row for row in rows if not row["status"].startswith((*_DONE, INTERRUPTED))]
-        if not arguments.quiet:
-            for note in notes:
-                print(f"stability: {note}", file=sys.stderr)
-            if failed:
-                print(f"stability: {len(failed)} of {len(rows)} rows are not resolved: see status", file=sys.stderr)
-            if missing:
-                print(f"stability: interrupted: {len(missing)} of {len(rows)} rows are not computed", file=sys.stderr)
-        if arguments.form == "netcdf":
-            result.to_netcdf(out)
-        else:
-            write(render(arguments.form, header, rows), out)
+        with whole_file(arguments.plot, "--plot") as temporary:
+            draw(result, temporary)
     return INTERRUPTED_STATUS if missing else 3 if failed else 0
+
+
+def check_files(arguments):
+    """Before the work, not after it: can its results be written?"""
+    if arguments.output:
+        check_writable(arguments.output, "-o")
+    if arguments.plot:
+        if not arguments.plot.endswith(_PLOTS):
+            raise ParameterError(f"--plot: the file must end in {', '.join(_PLOTS)} (got {arguments.plot!r})")
+        check_writable(arguments.plot, "--plot")
+
+
+def _deliver(arguments, header, rows, result):
+    """Write the result to the file of -o, or to standard output: there too if the file fails after all."""
+    if arguments.form == "netcdf":
+        with whole_file(arguments.output, "-o") as temporary:
+            result.to_netcdf(temporary)
+        return
+    if arguments.output is None:
+        write(render(arguments.form, header, rows, terminal_width()), None)
+        return
+    ending = Path(arguments.output).suffix
+    text = render(_FORMS.get(ending, arguments.form) if arguments.form == "table" else arguments.form, header, rows)
+    try:
+        with whole_file(arguments.output, "-o") as temporary:
+            write(text, temporary)
+    except ParameterError:
+        write(text, None)
+        raise
 
 
 def collect(arguments, results, total, rest, size=lambda result: 1):
@@ -144,18 +199,6 @@ def collect(arguments, results, total, rest, size=lambda result: 1):
     finally:
         bar.clear()
     return found
-
-
-def _plot_file(arguments, stack):
-    if not arguments.plot:
-        return None
-    check_plot(arguments.plot)
-    return stack.enter_context(whole_file(arguments.plot, "--plot"))
-
-
-def check_plot(path):
-    if not path.endswith(_PLOTS):
-        raise ParameterError(f"--plot: the file must end in {', '.join(_PLOTS)} (got {path!r})")
 
 
 def _nearest(name, known):

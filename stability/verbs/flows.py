@@ -1,15 +1,16 @@
 """stability flows: what can be computed, with parameters, defaults, ranges and scales."""
 
 from dataclasses import fields
+from textwrap import wrap
 
 from ..flows import FLOWS
 from ..flows.base import allowed
-from ..output import write
+from ..output import terminal_width, write
 from .common import flag, flow_class
 
 
 def add(verbs):
-    verb = verbs.add_parser("flows", help="flows, parameters, defaults, ranges, scales", allow_abbrev=False,
+    verb = verbs.add_parser("flows", help="flows, parameters, defaults, ranges, scales",
                             epilog="example: stability flows dune")
     verb.add_argument("flow", nargs="?", metavar="FLOW", help=f"one of {', '.join(FLOWS)}")
     verb.set_defaults(run=_run)
@@ -17,14 +18,18 @@ def add(verbs):
 
 def _run(arguments):
     chosen = [flow_class(arguments.flow)] if arguments.flow else FLOWS.values()
-    write("\n".join(_describe(flow) for flow in chosen), None)
+    write("\n".join(_describe(flow, terminal_width()) for flow in chosen), None)
     return 0
 
 
-def _describe(flow):
+def _describe(flow, width):
     rows = [(flag(item), str(item.default), allowed(item.metadata), item.metadata["meaning"]) for item in fields(flow)]
     widths = [max(len(row[i]) for row in rows) for i in range(3)]
     lines = ["  " + "  ".join((*(cell.ljust(w) for cell, w in zip(row, widths, strict=False)), row[3])) for row in rows]
+    if width and max(map(len, lines)) > width:
+        lines = [line for name, default, range_, meaning in rows
+                 for line in (f"  {name} {default}, {range_}", *wrap(meaning, width - 4, initial_indent="    ",
+                                                                     subsequent_indent="    "))]
     return "\n".join([f"{flow.name}: {flow.title}", *(f"  {part}" for part in flow.scales.split("; ")), *lines, ""])
 
 

@@ -5,9 +5,8 @@ from pathlib import Path
 
 from ..checks import check_integer
 from ..errors import ParameterError
-from ..output import check_writable
 from ..specs import parse_spec
-from .common import INTERRUPTED_STATUS, SPEC, add_verb, check_plot, flow_of, options_of, report, swept_values
+from .common import INTERRUPTED_STATUS, SPEC, add_verb, check_files, flow_of, options_of, report, swept_values
 from .critical import vary_option
 from .progress import Bar
 
@@ -87,10 +86,6 @@ def _form(arguments):
 
 
 def _check_files(arguments, request):
-    """Before the work, not after it: can its results be written?"""
-    check_writable(arguments.output, "-o")
-    if arguments.plot:
-        check_plot(arguments.plot)
-        check_writable(arguments.plot, "--plot")
-        if len(request.axes) > _DRAWN_AXES:
-            raise ParameterError(f"--plot: draws maps over one or two axes (this one has {', '.join(request.axes)})")
+    check_files(arguments)
+    if arguments.plot and len(request.axes) > _DRAWN_AXES:
+        raise ParameterError(f"--plot: draws maps over one or two axes (this one has {', '.join(request.axes)})")
