@@ -5,6 +5,8 @@
 -2*k**2/5
 """
 
+__version__ = "0.1.0"
+
 from .flows import expand
 from .series import Expansion
 

@@ -9,6 +9,8 @@ import os
 import sys
 from difflib import get_close_matches
 
+from . import __version__
+
 VERBS = ("flows", "expand", "check")
 
 
@@ -17,8 +19,37 @@ class BadUsage(ValueError):
 
 
 class _Parser(argparse.ArgumentParser):
+    """Errors as exceptions; examples in one line, to be copied."""
+
+    def __init__(self, **options):
+        super().__init__(formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False, **options)
+
     def error(self, message):
         raise BadUsage(f"{message} (see: {self.prog} --help)")
+
+    def exit(self, status=0, message=None):
+        sys.stdout.flush()  # of the help: where nobody reads it, say so in `main`
+        super().exit(status, message)
+
+
+class _Help(argparse.Action):
+    """Print the help of a verb, with the parameters of the flow that has been named before, if any."""
+
+    def __init__(self, option_strings, dest, help):
+        super().__init__(option_strings, argparse.SUPPRESS, nargs=0, default=argparse.SUPPRESS, help=help)
+
+    def __call__(self, parser, namespace, values, option_string=None):
+        from . import flows
+
+        group = namespace.parameters
+        if namespace.flow in flows.names():
+            flow = flows.load(namespace.flow)
+            texts = {parameter.flag: f"{parameter.meaning}, {parameter.range}" for parameter in flow.PARAMETERS}
+            group.title, group.description = f"parameters of {namespace.flow}", flow.SUMMARY
+            for action in group._group_actions:
+                action.help = texts.get(action.option_strings[0], argparse.SUPPRESS)
+        parser.print_help()
+        parser.exit()
 
 
 def main(argv=None) -> int:
@@ -31,6 +62,9 @@ def main(argv=None) -> int:
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 141
+    except OSError as reason:  # input files report their own; this is the stream
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return _fail(f"cannot write to standard output: {reason.strerror}", 2)
     except KeyboardInterrupt:
         return _fail("interrupted", 130)
 
@@ -58,25 +92,24 @@ def _fail(reason, status: int) -> int:
 
 def _parser(argv) -> _Parser:
     parser = _Parser(prog="asymptotics", description="Long-wave and other limits of granular shear flows, exactly.",
-                     epilog="example: asymptotics expand dune --regime shallow --shields 1.5 --depth 10",
-                     allow_abbrev=False)
-    parser.add_argument("--version", action="version", version="asymptotics 0.1.0")
+                     epilog="example: asymptotics expand dune --regime shallow --shields 1.5 --depth 10")
+    parser.add_argument("--version", action="version", version=f"asymptotics {__version__}")
     verbs = parser.add_subparsers(metavar="VERB", required=True, parser_class=_Parser)
-    verb = verbs.add_parser("flows", help="flows, their parameters and regimes", allow_abbrev=False,
+    verb = verbs.add_parser("flows", help="flows, their parameters and regimes",
                             epilog="example: asymptotics flows dune")
-    verb.add_argument("flow", nargs="?", metavar="FLOW")
+    verb.add_argument("flow", nargs="?", metavar="FLOW", help="one flow only")
     verb.set_defaults(run=_flows)
-    expand = verbs.add_parser("expand", help="expansion of the growth rate", allow_abbrev=False,
+    expand = verbs.add_parser("expand", help="expansion of the growth rate", add_help=False,
                               epilog="example: asymptotics expand vortex --order 4 --slope-deg 30")
-    expand.add_argument("flow", metavar="FLOW")
+    expand.add_argument("flow", metavar="FLOW", help="one of those that are listed by: asymptotics flows")
     expand.set_defaults(run=_expand)
     form = expand.add_mutually_exclusive_group()
     form.add_argument("--latex", dest="form", action="store_const", const="latex", help="LaTeX formulas")
     form.add_argument("--json", dest="form", action="store_const", const="json", help="JSON")
     check = verbs.add_parser("check", help="compare with numbers written by `stability dispersion ... --csv`",
-                             allow_abbrev=False,
+                             add_help=False,
                              epilog="example: stability dispersion dune --k 1e-6:1e-4:9 --csv | asymptotics check dune")
-    check.add_argument("flow", metavar="FLOW")
+    check.add_argument("flow", metavar="FLOW", help="the flow that the numbers belong to")
     check.add_argument("file", nargs="?", default="-", metavar="CSV", help="file, or - for standard input")
     check.add_argument("--tolerance", default="0.05", metavar="T", help="allowed difference of the orders")
     check.add_argument("--k-max", metavar="K", help="leave out larger wavenumbers (default: the lowest two decades)")
@@ -84,23 +117,21 @@ def _parser(argv) -> _Parser:
     for verb in (expand, check):
         verb.add_argument("--order", metavar="M", help="highest power of the gauge, e.g. 2 or 4/3")
         verb.add_argument("--regime", metavar="NAME", help="which limit (see: asymptotics flows)")
-    if argv and argv[0] in VERBS[1:]:
-        _add_parameters(expand, check)
+        verb.add_argument("-h", "--help", action=_Help, help="show this help and exit")
+        if argv and argv[0] in VERBS[1:]:
+            _add_parameters(verb)
     return parser
 
 
-def _add_parameters(*verbs) -> None:
+def _add_parameters(verb) -> None:
     """Flags of every flow: a flow is a module that costs sympy, so only when a verb needs them."""
     from . import flows
 
-    meanings: dict[tuple[str, str], list[str]] = {}
-    for name in flows.names():
-        for parameter in flows.load(name).PARAMETERS:
-            meaning = f"{name}: {parameter.meaning}, {parameter.range}"
-            meanings.setdefault((parameter.flag, parameter.name), []).append(meaning)
-    for (flag, name), lines in meanings.items():
-        for verb in verbs:
-            verb.add_argument(flag, dest=f"parameter {name}", metavar="V", help="; ".join(lines))
+    group = verb.add_argument_group("parameters of the flow", f"listed by: {verb.prog} FLOW --help")
+    known = {parameter.flag: parameter.name for name in flows.names() for parameter in flows.load(name).PARAMETERS}
+    for flag, name in known.items():
+        group.add_argument(flag, dest=f"parameter {name}", metavar="V", help=argparse.SUPPRESS)
+    verb.set_defaults(parameters=group)
 
 
 # -- verbs -----------------------------------------------------------------------------------------------

@@ -5,12 +5,15 @@ import json
 import os
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
 import sympy as sp
 
+from asymptotics import __version__ as asymptotics_version
 from asymptotics import cli, expand, flows
+from stability import __version__ as stability_version
 from stability.cli import main as stability
 
 ROOT = Path(__file__).parents[2]
@@ -196,6 +199,35 @@ def test_as_a_program():
     assert all(name in listing.stdout for name in ("vortex", "dune", "--slope-deg", "--Fr2", "near-yield"))
     failed = program("expand", "dune", "--shields", "1")
     assert (failed.returncode, failed.stdout, len(failed.stderr.splitlines())) == (2, "", 1)
+
+
+def test_both_programs_have_the_version_of_the_package():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    assert program("--version").stdout == f"asymptotics {project['version']}\n"
+    assert project["version"] == asymptotics_version == stability_version
+
+
+@pytest.mark.parametrize("verb", ["flows", "expand", "check"])
+def test_help_has_an_example(verb):
+    text = program(verb, "--help").stdout
+    assert "example: " in text
+    assert f"asymptotics {verb}" in text.splitlines()[-1]
+
+
+def test_help_lists_the_parameters_of_the_flow_that_is_named():
+    general, vortex = program("expand", "--help").stdout, program("expand", "vortex", "--help").stdout
+    assert "--Fr2" not in general
+    assert "asymptotics expand FLOW --help" in general
+    assert "--Fr2 V" in vortex
+    assert "--shields" not in vortex
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
+def test_a_full_disk_is_one_line():
+    done = subprocess.run(["bash", "-c", f"{sys.executable} -m asymptotics flows > /dev/full"], cwd=ROOT, check=False,
+                          capture_output=True, text=True)
+    assert done.returncode == 2
+    assert done.stderr == "asymptotics: cannot write to standard output: No space left on device\n"
 
 
 def test_a_broken_pipe_is_quiet():
