@@ -9,6 +9,7 @@ under integration; nothing here is ever simplified, because partial fractions ar
 from collections import defaultdict
 from dataclasses import dataclass, field
 from math import comb
+from typing import Any
 
 import sympy as sp
 
@@ -28,7 +29,7 @@ class FieldSpace:
     logs   {(pole, point): element} values of log((x - q)/(origin - q)) at other points, as domain elements
     """
 
-    domain: object
+    domain: Any
     poles: tuple[int, ...] = ()
     origin: int | None = None
     logs: dict = field(default_factory=dict, hash=False)

@@ -152,7 +152,7 @@ def _short_wave_vorticity(n: int) -> tuple[Fraction, ...]:
     for j in reversed(range(len(source))):
         slope[j] = ((j + 1) * slope[j + 1] - source[j]) / 2
     rest = [c / (j + 1) for j, c in enumerate(slope[:-1])]
-    moment = sum(c * Fraction(factorial(j), 2 ** (j + 1)) for j, c in enumerate(rest, 1))
+    moment = sum((c * Fraction(factorial(j), 2 ** (j + 1)) for j, c in enumerate(rest, 1)), Fraction(0))
     return (-2 * moment, *rest)
 
 

@@ -10,7 +10,6 @@ coefficients of the truncated series at once: one that is 1 % wrong leaves a slo
 5.0
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -81,7 +80,7 @@ def compare(numeric, series, k, expected: float, *, correction: float | None = N
     Raises TooFewPoints if fewer than four points remain.
     """
     k = np.asarray(k, dtype=float)
-    numeric, series = (np.asarray(values(k) if isinstance(values, Callable) else values, dtype=complex)
+    numeric, series = (np.asarray(values(k) if callable(values) else values, dtype=complex)
                        for values in (numeric, series))
     floor = np.broadcast_to(0.0 if error is None else np.asarray(error, dtype=float), k.shape)
     rising = np.argsort(k)

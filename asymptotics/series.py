@@ -6,6 +6,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import sympy as sp
 
@@ -49,14 +50,14 @@ class Expansion:
         """Real part of i sigma/k: positive downstream."""
         return self._part(lambda c: -sp.im(c) / self.wavenumber)
 
-    def coefficient(self, power) -> sp.Expr:
+    def coefficient(self, power: Any) -> sp.Expr:
         return self.terms[sp.Rational(power)]
 
     def values(self) -> dict[sp.Rational, complex | None]:
         """The coefficients as numbers; None while a parameter is symbolic."""
         return {power: _number(c) for power, c in self.terms.items()}
 
-    def with_parameters(self, **values) -> "Expansion":
+    def with_parameters(self, **values: Any) -> "Expansion":
         """The same expansion with numbers (or expressions) for some of its parameters."""
         unknown = set(values) - set(self.parameters)
         if unknown:
@@ -68,14 +69,14 @@ class Expansion:
         return replace(self, terms=terms, parameters={**self.parameters, **exact},
                        wavenumber=self.wavenumber.subs(substitution))
 
-    def truncated(self, power) -> "Expansion":
+    def truncated(self, power: Any) -> "Expansion":
         """Only the terms up to `power`; the next one that does not vanish sets the order of the error."""
         power = sp.Rational(power)
         left_out = [p for p, c in self.terms.items() if p > power and c != 0]
         terms = {p: c for p, c in self.terms.items() if p <= power}
         return replace(self, terms=terms, next_power=min([*left_out, self.next_power]))
 
-    def function(self, **values) -> Callable:
+    def function(self, **values: Any) -> Callable[[Any], Any]:
         """A numpy function of the gauge (shape in, same shape out, complex), all parameters being numbers.
 
         >>> from asymptotics.flows import vortex

@@ -110,6 +110,8 @@ def _references():
     if not path.exists():
         return None
     spec = importlib.util.spec_from_file_location("references", path)
+    assert spec
+    assert spec.loader
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module

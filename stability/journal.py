@@ -8,7 +8,7 @@ from pathlib import Path
 try:
     import fcntl
 except ImportError:  # no such lock on this system
-    fcntl = None
+    fcntl = None  # type: ignore[assignment]
 
 from .errors import ParameterError
 

@@ -1,5 +1,7 @@
 """Figures of maps: lines over one axis, colours over two; jumps between branches drawn, doubtful points hatched."""
 
+from typing import Any
+
 import numpy as np
 
 from .errors import ParameterError
@@ -54,7 +56,7 @@ def _legend(figure, found, doubtful):
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    handles = [Patch(facecolor="none", edgecolor=GREY, hatch=HATCHES[name], label=name)
+    handles: list[Any] = [Patch(facecolor="none", edgecolor=GREY, hatch=HATCHES[name], label=name)
                for name, where in doubtful.items() if where.any()]
     if found.quantity == "k_max" and len(found.axes) == 2 and any(part.any() for part in branch_changes(found)):
         handles.append(Line2D([], [], color=RED, label="jump between branches"))

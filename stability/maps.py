@@ -4,12 +4,14 @@ A piece is a fixed part of the grid, a stretch of its innermost parameter, so th
 number of workers nor on the order in which they finish, nor on interruptions.
 """
 
-from concurrent.futures import BrokenExecutor, as_completed
+from collections.abc import Callable, Mapping
+from concurrent.futures import BrokenExecutor, Executor, as_completed
 from contextlib import closing, nullcontext
 from dataclasses import dataclass, field, fields, replace
 from itertools import islice, product
 from math import prod
-from typing import Any
+from os import PathLike
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,11 +22,17 @@ from .journal import Journal
 from .mode import DEGREES, TOLERANCE
 from .neutral import check_parameter_name, critical_sweep
 from .optimum import k_max_sweep
-from .output import header_of
+from .output import Row, header_of
 from .pool import processes
 from .record import Record
 from .relation import dispersion
 from .wellposed import flag_outgrown, outgrown
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from numpy.typing import ArrayLike
+
+    from .flows import Flow
 
 QUANTITIES = ("k_max", "growth_rate", "neutral")
 
@@ -46,7 +54,7 @@ class Request:
     "neutral". Raises ParameterError where that makes no map."""
 
     flow: Any
-    over: dict
+    over: Any
     quantity: str
     k: Any = None
     vary: str | None = None
@@ -159,47 +167,47 @@ class Map(Record):
     """
 
     request: Request
-    table: tuple = field(repr=False)
+    table: tuple[tuple[Any, ...], ...] = field(repr=False)
 
     @property
-    def flow(self):
+    def flow(self) -> Any:  # type: ignore[override]
         return self.request.flow
 
     @property
-    def quantity(self):
+    def quantity(self) -> str:
         return self.request.quantity
 
     @property
-    def axes(self):
+    def axes(self) -> dict[str, np.ndarray]:
         """{name: values (count,)}, outermost first."""
         return self.request.axes
 
     @property
-    def results(self):
+    def results(self) -> tuple[str, ...]:
         """Names of the results at each point; the last is the status."""
         return self.request.results
 
     @property
-    def dimension(self):
+    def dimension(self) -> str:
         """The outermost axis."""
         return self.dimensions[0]
 
     @property
-    def dimensions(self):
+    def dimensions(self) -> tuple[str, ...]:
         return tuple(self.axes)
 
     @property
-    def bounded(self):
-        return {"k_max": "k_max", "growth_rate": "sigma", "neutral": self.request.vary}[self.quantity]
+    def bounded(self) -> str:
+        return {"k_max": "k_max", "growth_rate": "sigma", "neutral": self.request.vary or ""}[self.quantity]
 
     @property
-    def title(self):
+    def title(self) -> str:
         """The flow and its fixed parameters."""
         fixed = {name: value for name, value in self.request.description()["parameters"].items()
                  if name != self.request.vary}
         return f"{self.flow.name}: {', '.join(f'{name} {_short(value)}' for name, value in fixed.items())}"
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> np.ndarray:
         if name in self.axes:
             return self.axes[name]
         if name not in self.results:
@@ -208,28 +216,28 @@ class Map(Record):
         return np.array(values, dtype=str if name == "status" else float).reshape(self.request.shape)
 
     @property
-    def resolved(self):
+    def resolved(self) -> np.ndarray:
         """Which points are resolved, in the shape of the axes."""
         return np.char.startswith(self["status"], "resolved")
 
-    def rows(self):
+    def rows(self) -> list[Row]:
         """One dict for each point, the last axis fastest."""
         axes = self.axes
         return [dict(zip((*axes, *self.results), (*point, *results), strict=True))
                 for point, results in zip(product(*(values.tolist() for values in axes.values())), self.table,
                                           strict=True)]
 
-    def columns(self):
+    def columns(self) -> dict[str, np.ndarray]:
         """Return axes (count,) and results, shaped by the axes; nan where there is no number."""
         return {**self.axes, **{name: self[name] for name in self.results}}
 
-    def about(self):
+    def about(self) -> dict[str, Any]:
         return {"quantity": self.quantity, "over": ", ".join(self.axes)}
 
-    def header(self):
+    def header(self) -> dict[str, Any]:
         return header_of(self.flow, self.method, self.notes(), (*self.request.over, self.request.vary))
 
-    def plot(self, ax=None, quantity=None):
+    def plot(self, ax: "Axes | None" = None, quantity: str | None = None) -> "Axes":
         """Draw a result (the first, by default) over one or two axes into the matplotlib Axes `ax`, or a new one."""
         from . import mapplots, plots
 
@@ -240,8 +248,11 @@ def _short(value):
     return f"{value:g}" if isinstance(value, float) else value
 
 
-def parameter_map(flow, over, quantity=None, *, k=None, vary=None, executor=None, workers=1, journal=None, report=None,
-                  tolerance=TOLERANCE, max_degree=DEGREES[-1]):
+def parameter_map(flow: "Flow", over: "Mapping[str, ArrayLike]", quantity: str | None = None, *,
+                  k: "ArrayLike | None" = None, vary: str | None = None, executor: Executor | None = None,
+                  workers: int = 1, journal: str | PathLike[str] | None = None,
+                  report: Callable[[int, int], object] | None = None, tolerance: float = TOLERANCE,
+                  max_degree: int = DEGREES[-1]) -> Map:
     """Return the `Map` of a quantity over one to three parameters, `over` = {name: values}.
 
     "k_max" (the default) is the fastest growing wavenumber of the surface mode with its growth rate, "growth_rate"

@@ -23,7 +23,7 @@ _FEW = 4  # digits at which lists give way to their length
 _PREFIX = 100  # bytes of a file's name that its temporary file shows
 
 
-def header_of(flow: Any, method: str, notes: Sequence[str] = (), swept: Collection[str] = ()) -> dict[str, Any]:
+def header_of(flow: Any, method: str, notes: Sequence[str] = (), swept: Collection[str | None] = ()) -> dict[str, Any]:
     """What belongs to a whole result: flow, parameters but the swept ones, method, version, and notes if any."""
     parameters = {item.name: getattr(flow, item.name) for item in fields(flow) if item.name not in swept}
     header = {"flow": flow.name, "parameters": parameters, "method": method, "version": __version__}

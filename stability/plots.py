@@ -41,7 +41,8 @@ def draw(result, path):
     from matplotlib.figure import Figure
 
     with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(6.4, 2.8), layout="none" if _plain(result) else "constrained")
+        layout: Any = "none" if _plain(result) else "constrained"
+        figure = Figure(figsize=(6.4, 2.8), layout=layout)
         if _plain(result):
             figure.subplots_adjust(left=0.14, right=0.98, bottom=0.18, top=0.86, wspace=0.45)
         if hasattr(result, "axes"):

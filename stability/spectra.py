@@ -25,6 +25,8 @@ from .threads import one_thread
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from .flows import Flow
+
 MOST = 200  # modes that can be asked for
 
 _LARGEST = 1300  # unknowns of a dense problem
@@ -151,7 +153,8 @@ def _smallest_count(structure):
 
 
 @one_thread
-def spectrum(flow, k, modes=10, *, tolerance=TOLERANCE, max_degree=DEGREES[-1], strict=True):
+def spectrum(flow: "Flow", k: float, modes: int = 10, *, tolerance: float = TOLERANCE, max_degree: int = DEGREES[-1],
+             strict: bool = True) -> Spectrum:
     """Return the `modes` least stable modes at wavenumber k, each refined to its own degree with an error bar.
 
     The degree of the dense problem is raised until those modes no longer move. Raises NotResolved if

@@ -51,7 +51,7 @@ class System:
     def __eq__(self, other):
         return _same(self.equations, other.equations) and _same(self.conditions, other.conditions)
 
-    __hash__ = None
+    __hash__ = None  # type: ignore[assignment]
 
     def _equations(self, layer, names, order):
         fields = [symbol(f"{layer.name}.{field}") for field in FIELDS]

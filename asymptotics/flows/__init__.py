@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from pkgutil import iter_modules
+from typing import Any
 
 import sympy as sp
 
@@ -60,7 +61,7 @@ def names() -> list[str]:
     return sorted(module.name for module in iter_modules(__path__))
 
 
-def load(name: str):
+def load(name: str) -> Any:
     """The module of a flow."""
     if name not in names():
         raise NoSuchFlow(f"no flow {name!r}; the flows are {', '.join(names())}")
@@ -79,7 +80,7 @@ def regime_for(flow, name: str | None, values: Mapping) -> str:
     raise BadParameter(reasons[0])
 
 
-def expand(flow_name: str, regime: str | None = None, order=None, **values) -> Expansion:
+def expand(flow_name: str, regime: str | None = None, order: Any = None, **values: Any) -> Expansion:
     """Expansion of sigma for a flow; parameters that are not given stay symbols.
 
     >>> expand("vortex", slope_deg=45).coefficient(2)

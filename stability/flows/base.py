@@ -2,13 +2,14 @@
 
 from dataclasses import dataclass, field, fields
 from math import isfinite
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from ..checks import LARGEST, as_number, check_options, in_double_precision, shown
 from ..errors import ParameterError
 
 
-def parameter(default, low=None, high=None, *, meaning, reason="", closed=False, unbounded=False):
+def parameter(default: float, low: float | None = None, high: float | None = None, *, meaning: str, reason: str = "",
+              closed: bool = False, unbounded: bool = False) -> Any:
     """Declare a numeric parameter with its open range low < value < high, its meaning and the reason.
 
     `closed` admits `low` itself as a value, `unbounded` admits inf.
@@ -17,7 +18,7 @@ def parameter(default, low=None, high=None, *, meaning, reason="", closed=False,
                                             "closed": closed, "unbounded": unbounded})
 
 
-def choice(*options, meaning):
+def choice(*options: str, meaning: str) -> Any:
     """Declare a parameter that takes one of a few names; the first is the default."""
     return field(default=options[0], metadata={"options": options, "meaning": meaning})
 
@@ -40,25 +41,25 @@ class Flow:
     bottom: ClassVar[float] = 0.0  # z of the lowest edge
     reflection: ClassVar[int] = 0  # of w in the lowest edge, 1 even or -1 odd, where that is a line of symmetry
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for item in fields(self):
             value = check_parameter(self.name, item, getattr(self, item.name))
             object.__setattr__(self, item.name, value)
 
-    def evaluate(self, k):
+    def evaluate(self, k: Any) -> dict[str, tuple[Any, Any, Any]]:
         """Return {name: (value, slope in k, absolute error)} of the functions of k, arrays like k."""
         return {}
 
-    def long_wave(self, k):
+    def long_wave(self, k: Any) -> Any:
         """Return the leading-order growth rate sigma of the slow surface mode as k -> 0."""
         raise ParameterError(f"{self.name} has no slow surface mode: ask for mode most-unstable")
 
-    def halves(self):
+    def halves(self) -> "tuple[Flow, ...]":
         """Return flows whose modes together are those of this one: itself, or symmetry classes on half the domain."""
         return (self,)
 
     @classmethod
-    def has_surface_mode(cls):
+    def has_surface_mode(cls) -> bool:
         """Whether there is a slow surface mode to follow from k -> 0."""
         return cls.long_wave is not Flow.long_wave
 

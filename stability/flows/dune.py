@@ -35,13 +35,13 @@ class Dune(Flow):
     fluid: str = choice("closed-form", "layer", meaning="wall stress in closed form, or a second layer")
 
     @property
-    def functions(self):
+    def functions(self):  # type: ignore[override]
         if self.fluid == "closed-form":
             return ("R",)
         return ("H",) if isinf(self.depth) else ()
 
     @property
-    def bottom(self):
+    def bottom(self):  # type: ignore[override]
         return 1 - self.shields
 
     def evaluate(self, k):

@@ -31,7 +31,7 @@ class TwoLayerCouette(Flow):
     tension: float = parameter(0.0, 0, closed=True, meaning="surface tension / (density * speed^2 * depth)")
 
     @property
-    def bottom(self):
+    def bottom(self):  # type: ignore[override]
         return -self.depth_ratio
 
     def layers(self, names):

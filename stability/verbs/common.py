@@ -76,7 +76,7 @@ def flag(item):
 
 def nearest_flag(arguments, unknown):
     """A hint at the parameter that an unknown option may stand for."""
-    flow = FLOWS.get(getattr(arguments, "flow", None))
+    flow = FLOWS.get(getattr(arguments, "flow", ""))
     return _nearest(unknown.partition("=")[0], [flag(item) for item in fields(flow)] if flow else ())
 
 

@@ -40,7 +40,8 @@ def _over(arguments, flow, vary, options):
 
     def compute():
         found = collect(arguments, critical_sweep(sweep, vary, long_wave=arguments.long_wave, **options), len(sweep),
-                        lambda done: [NeutralPoint(one, vary, *[None] * 5, INTERRUPTED) for one in sweep[done:]])
+                        lambda done: [NeutralPoint(one, vary, None, None, None, None, None, INTERRUPTED)
+                                      for one in sweep[done:]])
         return [{name: getattr(point.flow, name), **point.row()} for point in found], (name, found), []
 
     return report(arguments, flow, compute)

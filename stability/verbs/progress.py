@@ -12,8 +12,8 @@ class Bar:
 
     def __init__(self, quiet=False):
         self.shown = not quiet and sys.stderr.isatty()
-        self.done, self.total = 0, None
-        self._began = self._first = None
+        self.done = self.total = self._first = 0
+        self._began: float | None = None
         self._drawn = -_PAUSE
 
     def __call__(self, done, total):
