@@ -15,7 +15,7 @@ import numpy as np
 from .checks import check_wavenumbers, shown
 from .errors import ModeLost, NotResolved, ParameterError
 from .flows.base import check_flow
-from .mode import DEGREES, TOLERANCE, Assembly, Solver, check_accuracy
+from .mode import DEGREES, TOLERANCE, Assembly, Mode, Solver, check_accuracy
 from .output import Row
 from .record import Record
 from .threads import one_thread
@@ -41,7 +41,7 @@ class Maximum:
 
     k: float
     error: float
-    mode: Any
+    mode: Mode
 
     @property
     def growth_rate(self) -> float:

@@ -42,7 +42,7 @@ class DispersionRelation(Record):
 
     flow: Any
     mode: str
-    modes: tuple[Any, ...]
+    modes: tuple[Mode, ...]
     lost: dict[float, str]
     collisions: tuple[Collision, ...]
     asked: tuple[float, ...] = ()
