@@ -24,7 +24,7 @@ DEGREES = (8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 128, 160, 
            384, 512)
 TOLERANCE = 1e-10  # default bound on error / |sigma| for a resolved mode
 
-_LEAST = 64  # degree of the smallest table of entries
+_LEAST = 32  # degree of the smallest table of entries
 _TOGETHER = 16  # groups refined at once: their vectors stay in the cache
 _EPS = np.finfo(float).eps
 _ROUNDING = 3.0  # standard deviations of the accumulated rounding that the error bar spans
@@ -135,25 +135,29 @@ class Solver:
         self.degrees = tuple(d for d in DEGREES if d <= max_degree) or (max_degree,)
         self.assembly = assembly or Assembly(flow)
         self.pencil = self.assembly.pencil
-        self._symbols = {}
+        self._functions = {}
 
     def prepare(self, k):
         """Evaluate the flow's functions of k for a whole array (count,) at once."""
-        functions = self.flow.evaluate(k)
-        for i, value in enumerate(k):
-            self._symbols[float(value)] = _symbols(value, {name: [part[i] for part in parts]
-                                                          for name, parts in functions.items()})
+        values = np.array(list(self.flow.evaluate(k).values())).T  # (count, value slope error, functions)
+        self._functions.update(zip(k.tolist(), values if len(values) else [values] * len(k), strict=True))
+
+    def _at(self, k):
+        """Value, slope and error of the functions at one wavenumber, (3, functions)."""
+        if k not in self._functions:
+            self.prepare(np.array([k], dtype=float))
+        return self._functions[k]
 
     def symbols(self, k):
-        if float(k) not in self._symbols:
-            self.prepare(np.array([k], dtype=float))
-        return self._symbols[float(k)]
+        """Return {name: (value, slope, error)} of the symbols at one wavenumber."""
+        return {"k": (k, 1.0, 0.0), **dict(zip(self.flow.functions, self._at(float(k)).T, strict=True))}
 
     def weights(self, wavenumbers, degree):
         """Return the weights (parts, points) of the pencil of a degree at several wavenumbers."""
-        symbols = [self.symbols(k) for k in wavenumbers]
-        columns = {name: np.array([point[name] for point in symbols]).T for name in symbols[0]}
-        return self.pencil(degree).weights(columns)
+        k, functions = np.array(wavenumbers), np.array([self._at(k) for k in wavenumbers]).T
+        symbols = {"k": (k, np.ones_like(k), np.zeros_like(k)),
+                   **dict(zip(self.flow.functions, functions, strict=True))}
+        return self.pencil(degree).weights(symbols)
 
     def width(self, k):
         """sigma / rate at wavenumber k."""
@@ -194,7 +198,7 @@ class Solver:
             eigen = refine_many(self.pencil(degree), self.weights(wavenumbers, degree),
                                 *(np.concatenate(parts) for parts in zip(*guesses[chunk], strict=True)),
                                 [slice(*pair) for pair in pairwise(ends)], self.bars)
-            found = [self._mode(k, degree, eigen.at(i)) for i, k in enumerate(wavenumbers)]
+            found = [self._mode(k, degree, one) for k, one in zip(wavenumbers, eigen.split(), strict=True)]
             modes += [mode if settled and self._fits(mode) else None
                       for mode, settled in zip(found, eigen.settled, strict=True)]
         return modes
@@ -255,7 +259,3 @@ def _fit(vector, source, target, size):
         count = min(len(places), len(target[name]))
         fitted[target[name][:count]] = vector[places[:count]]
     return fitted
-
-
-def _symbols(k, functions):
-    return {"k": (k, 1.0, 0.0), **functions}

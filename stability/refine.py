@@ -46,9 +46,9 @@ class Eigen:
     y: np.ndarray
     settled: np.ndarray
 
-    def at(self, index):
-        """Return the eigenvalue of one point."""
-        return Eigen(*(getattr(self, field.name)[index] for field in fields(self)))
+    def split(self):
+        """Return the eigenvalues of the points, each on its own."""
+        return [Eigen(*values) for values in zip(*(getattr(self, field.name) for field in fields(self)), strict=True)]
 
 
 def refine(pencil, weights, rate, x=None, y=None, bars=True):
@@ -69,7 +69,7 @@ def refine(pencil, weights, rate, x=None, y=None, bars=True):
             break
         settled = _settled(x_error, y_error)
         if settled[0]:
-            return _quotient(pencil, weights, x, y, settled, bars).at(0)
+            return _quotient(pencil, weights, x, y, settled, bars).split()[0]
     raise ModeLost(f"inverse iteration near rate {complex(rate):.6g} did not settle")
 
 

@@ -28,6 +28,7 @@ _FEW = 3  # wavenumbers that are walked to one by one
 _MANY = 8  # wavenumbers between two nodes that are refined one by one
 _STRIDE = 2.0  # of n more than these every _STRIDE sqrt(n)-th becomes a node first
 _DRIFT = 0.05  # largest relative difference of a refined rate from its interpolation
+_TRIES, _LIKELY = 16, 4  # wavenumbers at which the long-wave limit is sought, and those that mostly suffice
 _AGREEMENT = 0.03  # of the surface mode with its long-wave limit, in value and in slope
 
 
@@ -62,21 +63,21 @@ def surface_mode(solver, k):
 
     Value and logarithmic slope must both agree: another mode can meet one of them by chance.
     """
-    for _ in range(16):
-        guess, ahead = solver.flow.long_wave(np.array([k, 1.01 * k]))
-        exponent = np.log(ahead / guess) / log(1.01)
-
-        def agrees(mode, guess=guess, exponent=exponent):
-            return abs(mode.sigma / guess - 1) < _AGREEMENT \
+    tried = k / 5.0 ** np.arange(_TRIES)
+    limits, ahead = np.split(solver.flow.long_wave(np.concatenate((tried, 1.01 * tried))), 2)
+    exponents = np.log(ahead / limits) / log(1.01)
+    solver.prepare(tried[:_LIKELY])
+    for k, limit, exponent in zip(tried.tolist(), limits, exponents, strict=True):
+        def agrees(mode, limit=limit, exponent=exponent):
+            return abs(mode.sigma / limit - 1) < _AGREEMENT \
                 and abs(mode.k * mode.slope / mode.sigma - exponent) < _AGREEMENT
 
         with suppress(ModeLost):
-            mode = solver.solve(k, guess / solver.width(k), glance=True)
+            mode = solver.solve(k, limit / solver.width(k), glance=True)
             if agrees(mode):
                 mode = solver.solve(k, mode.rate, (mode.degree, mode.x, mode.y))
                 if agrees(mode):
                     return mode
-        k = k / 5
     raise ModeLost(f"{solver.flow}: no mode obeys the long-wave limit down to k = {k:.1e}")
 
 
