@@ -71,7 +71,10 @@ def main(argv=None) -> int:
 
 def _run(argv) -> int:
     try:
-        arguments = _parser(argv).parse_args(argv)
+        arguments, unknown = _parser(argv).parse_known_args(argv)
+        if unknown:
+            raise BadUsage(f"unknown {'option' if unknown[0].startswith('-') else 'argument'} {unknown[0]!r}"
+                           f"{_nearest_flag(arguments, unknown[0])}; see --help, and for parameters: asymptotics flows")
         return arguments.run(arguments)
     except BadUsage as reason:
         return _fail(reason, 2)
@@ -202,10 +205,21 @@ def _load(name: str):
     from . import flows
 
     if name not in flows.names():
-        near = get_close_matches(name, flows.names(), 1)
-        hint = f" (did you mean {near[0]!r}?)" if near else ""
-        raise BadUsage(f"unknown flow {name!r}{hint}; flows: {', '.join(flows.names())}")
+        raise BadUsage(f"unknown flow {name!r}{_nearest(name, flows.names())}; flows: {', '.join(flows.names())}")
     return flows.load(name)
+
+
+def _nearest_flag(arguments, unknown: str) -> str:
+    from . import flows
+
+    name = getattr(arguments, "flow", None)
+    known = [parameter.flag for parameter in flows.load(name).PARAMETERS] if name in flows.names() else []
+    return _nearest(unknown.partition("=")[0], known)
+
+
+def _nearest(name: str, known) -> str:
+    match = get_close_matches(name, known, 1)
+    return f" (did you mean {match[0]!r}?)" if match else ""
 
 
 def _given(arguments) -> dict[str, str]:

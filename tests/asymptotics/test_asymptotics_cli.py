@@ -101,6 +101,8 @@ def test_order_and_default_regime(capsys):
     (["expand", "rollwave", "--mu1", "0.4", "--mu2", "0.6", "--slope-deg", "33"], ["slope_deg", "30.9638", "33"]),
     (["expand", "two_layer_couette", "--order", "3"], ["order 3", "viscosity_ratio, depth_ratio, density_ratio"]),
     (["expand", "two_layer_couete"], ["did you mean 'two_layer_couette'"]),
+    (["expand", "dune", "--shield", "2"], ["unknown option '--shield'", "did you mean '--shields'"]),
+    (["flows", "dune", "film"], ["unknown argument 'film'"]),
     (["expand"], ["FLOW", "--help"]),
     ([], ["VERB", "--help"]),
     (["expand", "dune", "--json", "--latex"], ["--latex"]),
