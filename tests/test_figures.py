@@ -1,6 +1,8 @@
-"""The laws that the first figure draws beside the computed curves."""
+"""The laws that the first figure draws beside the computed curves; the index of figures, and the citation."""
 
+import re
 import sys
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -43,3 +45,19 @@ def test_small_Re(figure):
     near, far = remainders(figure.small_Re(flows.Dune()), flows.Dune(), [1e-4, 1e-6]).T
     assert np.all(np.abs(far) < 1e-3)
     assert np.all(np.log10(near / far) > 0.9)
+
+
+def test_every_figure_is_in_the_index():
+    """With a thumbnail and its script, and with both files beside it."""
+    index = (FIGURES / "README.md").read_text(encoding="utf-8")
+    scripts = sorted(path.stem for path in FIGURES.glob("*.py") if path.name not in {"all.py", "style.py"})
+    assert sorted(re.findall(r'<img src="(\w+)\.png" width="\d+">', index)) == scripts
+    assert sorted(re.findall(r"\[\w+\.py\]\((\w+)\.py\)", index)) == scripts
+    assert all((FIGURES / name).with_suffix(ending).exists() for name in scripts for ending in (".png", ".csv"))
+
+
+def test_the_citation_has_the_version_and_the_authors_of_the_package():
+    citation = (FIGURES.parent / "CITATION.cff").read_text(encoding="utf-8")
+    project = tomllib.loads((FIGURES.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert f"\nversion: {project['version']}\n" in citation
+    assert f"\n  - name: {project['authors'][0]['name']}\n" in citation
