@@ -80,3 +80,10 @@ def check_options(name, value, options):
     if not (isinstance(value, str) and value in options):
         raise ParameterError(f"{name} must be one of {', '.join(options)} (got {shown(value)})")
     return str(value)
+
+
+def check_flag(name, value):
+    """Return True or False, or raise a ParameterError."""
+    if not isinstance(value, bool | np.bool_):
+        raise ParameterError(f"{name} must be True or False (got {shown(value)})")
+    return bool(value)

@@ -27,7 +27,7 @@ TOLERANCE = 1e-10  # default bound on error / |sigma| for a resolved mode
 _LEAST = 32  # degree of the smallest table of entries
 _TOGETHER = 16  # groups refined at once: their vectors stay in the cache
 _EPS = np.finfo(float).eps
-_ROUNDING = 3.0  # standard deviations of the accumulated rounding that the error bar spans
+_ROUNDING = 4.0  # standard deviations of the accumulated rounding that the error bar spans
 
 
 @dataclass(frozen=True)

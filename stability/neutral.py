@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from .checks import check_wavenumbers, shown
+from .checks import check_flag, check_wavenumbers, shown
 from .errors import ModeLost, NotResolved, ParameterError
 from .flows.base import check_flow
 from .mode import DEGREES, TOLERANCE, check_accuracy
@@ -112,6 +112,7 @@ def critical(flow: "Flow", vary: str, *, long_wave: bool = False, tolerance: flo
     >>> f"{point.value:.9f} at k = {point.k:g}"
     '1.250000000 at k = 0'
     """
+    strict, long_wave = check_flag("strict", strict), check_flag("long_wave", long_wave)
     (point,) = critical_sweep([check_flow(flow)], vary, long_wave=long_wave, tolerance=tolerance, max_degree=max_degree)
     if strict and point.status != "resolved":
         raise NotResolved(point.status)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from .checks import check_wavenumbers, shown
+from .checks import check_flag, check_wavenumbers, shown
 from .errors import ModeLost, NotResolved, ParameterError
 from .flows.base import check_flow
 from .mode import DEGREES, TOLERANCE, Assembly, Mode, Solver, check_accuracy
@@ -160,6 +160,7 @@ def k_max(flow: "Flow", search: tuple[float, float] = SEARCH, *, tolerance: floa
     Only maxima with positive growth rate count: a flow that decays everywhere has none. Raises
     NotResolved if there is none; with strict=False the record says so in `status`.
     """
+    strict = check_flag("strict", strict)
     (optimum,) = k_max_sweep([check_flow(flow)], search, tolerance=tolerance, max_degree=max_degree)
     if strict and optimum.status != "resolved":
         raise NotResolved(f"{flow}: {optimum.status}")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from .checks import check_options, check_wavenumbers
+from .checks import check_flag, check_options, check_wavenumbers
 from .errors import INTERRUPTED, ModeLost
 from .flows.base import check_flow
 from .mode import DEGREES, TOLERANCE, Mode, Solver, check_accuracy, require
@@ -137,6 +137,7 @@ def dispersion(flow: "Flow", k: "ArrayLike", mode: str | None = None, *, toleran
     "most-unstable" takes the least stable mode of the spectrum at each k. `tolerance` bounds error / |sigma|.
     Raises NotResolved or ModeLost; with strict=False the record says in `status` and `lost` what failed.
     """
+    strict = check_flag("strict", strict)
     parts = list(dispersion_parts(flow, k, mode, tolerance=tolerance, max_degree=max_degree))
     relation = joined(parts, check_wavenumbers(k).tolist())
     if strict:

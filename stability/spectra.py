@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from scipy.linalg import qr
 
-from .checks import check_integer, check_wavenumber
+from .checks import check_flag, check_integer, check_wavenumber
 from .errors import ModeLost
 from .flows.base import check_flow
 from .mode import DEGREES, TOLERANCE, Mode, Solver, check_accuracy, require
@@ -160,6 +160,7 @@ def spectrum(flow: "Flow", k: float, modes: int = 10, *, tolerance: float = TOLE
     The degree of the dense problem is raised until those modes no longer move. Raises NotResolved if
     one of them is not resolved within `max_degree`; with strict=False its status says so instead.
     """
+    strict = check_flag("strict", strict)
     k, modes = check_wavenumber(k), check_integer(modes, "modes", 1, MOST)
     solver = Solver(check_flow(flow), *check_accuracy(tolerance, max_degree))
     found = leading_modes(solver, k, modes)

@@ -14,6 +14,7 @@ from stability import ParameterError, StabilityError, dispersion, flows, k_max, 
 from stability.angles import cot_deg
 from stability.checks import LARGEST, check_wavenumbers
 from stability.flows import FLOWS
+from stability.neutral import critical
 from stability.specs import parse_spec
 
 SEED, POINTS, TRUTH = 9, 30, 35
@@ -265,3 +266,13 @@ def test_growth_rates_belong_to_their_wavenumbers_whatever_the_order(name, seed)
     assert together.k.tolist() == k.tolist()
     assert together.sigma[1] == together.sigma[3]
     assert abs(alone.sigma - together.sigma[2]) <= alone.error + together.error[2]
+
+
+@pytest.mark.parametrize("compute", [lambda strict: dispersion(flows.Couette(), 1.0, strict=strict),
+                                     lambda strict: spectrum(flows.Couette(), 1.0, strict=strict),
+                                     lambda strict: k_max(flows.Dune(), strict=strict),
+                                     lambda strict: critical(flows.Film(), "Re", strict=strict)])
+def test_strict_is_a_flag(compute):
+    for value in (np.array([1.0, 2.0]), "yes", None):
+        with pytest.raises(ParameterError, match="strict must be True or False"):
+            compute(value)
