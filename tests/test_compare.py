@@ -1,7 +1,9 @@
 """All methods on one eigenvalue: values, reported errors, and the command."""
 
+import csv
 import json
 import sys
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -100,3 +102,21 @@ def test_command(capsys, tmp_path):
 def test_command_takes_one_wavenumber(capsys):
     assert main(["compare", "vortex", "--k", "1,2"]) == 2
     assert "one wavenumber" in capsys.readouterr().err
+
+
+def time_to(rows, problem, method, error):
+    """Shortest time of a method of the chart that is in error by no more than this; None if it never is."""
+    return min((float(row["seconds"]) for row in rows if (row["problem"], row["method"]) == (problem, method)
+                and float(row["error"]) <= error), default=None)
+
+
+@pytest.mark.parametrize("problem", ["vortices", "dunes"])
+def test_the_chart_says_which_method_to_use_for_nine_digits(problem):
+    """A hundred times faster than bvp; the textbook's script never gets there, and is slower where it is best."""
+    path = Path(__file__).resolve().parents[1] / "figures" / "work_precision.csv"
+    rows = list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
+    ours = time_to(rows, problem, "collocation", 1e-9)
+    assert time_to(rows, problem, "bvp", 1e-9) > 100 * ours
+    assert time_to(rows, problem, "textbook", 1e-9) is None
+    best = min(float(row["error"]) for row in rows if (row["problem"], row["method"]) == (problem, "textbook"))
+    assert time_to(rows, problem, "textbook", best) > 10 * ours
