@@ -22,6 +22,8 @@ from .layer import FIELDS
 from .stack import Stack
 from .table import TAIL
 
+_LAST = 4  # rows of an equation whose left vector bounds that of the tail: the last two alone feel the truncation
+
 
 @dataclass(frozen=True)
 class Weights:
@@ -44,7 +46,7 @@ class Pencil:
 
     The residual of the equations is (A - rate B) x. Attributes: `parts`, monomials; those from `first_b` on carry
     the rate and belong to -B; `stack` and `tail`, their `size` rows and the rows beyond; `columns` and `rows` map
-    unknowns and equations to index arrays; `last` (equations, 2) are the last two rows of each equation; `real`
+    unknowns and equations to index arrays; `last` (equations, 4) are the last rows of each equation; `real`
     tells whether all matrices are real.
     """
 
@@ -88,7 +90,7 @@ class Pencil:
         self.rows = {equation.name: rows[i, : self.degree + equation.extra]
                      for i, equation in enumerate(system.equations)}
         self.rows["conditions"] = rows[len(extra):, 0]
-        self.last = np.array([self.rows[equation.name][-2:] for equation in system.equations])
+        self.last = np.array([self.rows[equation.name][-_LAST:] for equation in system.equations])
         for i, count in enumerate(self.degree + extra):
             rows[i, count: count + TAIL] = self.size + i * TAIL + np.arange(TAIL)
         return columns, rows

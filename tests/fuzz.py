@@ -264,7 +264,8 @@ def truth(mode, budget=REFERENCE_BUDGET):
     parameters = {item.name: getattr(flow, item.name) for item in fields(flow) if item.name != "fluid"}
     try:
         with limit(budget):
-            exact = getattr(references, flow.name)(**parameters, k=mode.k, guess=mode.sigma)
+            radius = min(max(1e-3, 10 * mode.error / abs(mode.sigma)), 0.5)
+            exact = getattr(references, flow.name)(**parameters, k=mode.k, guess=mode.sigma, radius=radius)
     except Hang:
         return "no reference", "reference takes too long", 0.0
     except (ArithmeticError, ValueError) as reason:

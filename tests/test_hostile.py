@@ -14,6 +14,7 @@ from stability import ParameterError, StabilityError, dispersion, flows, k_max, 
 from stability.angles import cot_deg
 from stability.checks import LARGEST, check_wavenumbers
 from stability.flows import FLOWS
+from stability.mode import Solver
 from stability.neutral import critical
 from stability.specs import parse_spec
 
@@ -99,6 +100,8 @@ FOUND = {
     "tolerance": fuzz.Point("dune", {}, "spectrum", {"k": 1.0, "tolerance": math.nan}),
     "modes": fuzz.Point("dune", {}, "spectrum", {"k": 1.0, "modes": 10**9}),
     "name": fuzz.Point("dune", {}, "critical", {"vary": []}),
+    "strict": fuzz.Point("couette", {}, "dispersion", {"k": 1.0, "strict": np.array([1.0, 2.0])}),
+    "long wave": fuzz.Point("film", {}, "critical", {"vary": "Re", "long_wave": np.array([1.0, 2.0])}),
 }
 
 
@@ -145,6 +148,16 @@ def test_modes_of_very_viscous_flows_keep_their_digits(flow, k):
     for mode in spectrum(flow, k, 3).modes:
         kind, reason, _ = fuzz.truth(mode)
         assert kind == "holds", reason
+
+
+@pytest.mark.parametrize("degree", [16, 24, 32, 40])
+def test_truncation_errors_of_short_waves_hold(degree):
+    """Near the truncation the left vector is itself wrong: the rows before must bound what lies beyond."""
+    solver = Solver(flows.Couette(Re=2.91229110201458e-08), 1.0, degree)
+    solver.degrees = (degree,)
+    mode = solver.solve(40.69240602656987, -1.39945e9, None, degree)
+    exact = -56947093381.57407447  # power series
+    assert abs(mode.sigma - exact) < mode.error < 3 * abs(mode.sigma - exact)
 
 
 @pytest.mark.parametrize("slope", [20.9 * (1 + 1e-12), 20.9001, 28.0, 32.76 * (1 - 1e-12)])
