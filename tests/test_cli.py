@@ -220,11 +220,13 @@ def test_a_link_stays_a_link(tmp_path, capsys):
 def test_a_device_is_written_to_and_not_replaced(tmp_path, capsys):
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)  # a test that fails must not wait
     process = stability("dispersion", "vortex", "--k", "1", "-o", str(pipe))
-    assert pipe.read_text().startswith("k ")
-    assert process.communicate()[1] == ""
+    assert process.communicate(timeout=60)[1] == ""
     assert process.returncode == 0
     assert pipe.is_fifo()
+    assert os.read(reader, 1000).startswith(b"k ")
+    os.close(reader)
 
 
 @pytest.mark.skipif(not os.path.exists(FULL), reason="needs /dev/full")
