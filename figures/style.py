@@ -10,6 +10,7 @@ matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402
 
 from stability.plots import BLUE, GREY, RED, STYLE  # noqa: E402
+from stability.threads import one_thread  # noqa: E402
 
 GREEN, ORANGE = "#2e8b57", "#d98200"
 __all__ = ["BLUE", "GREEN", "GREY", "ORANGE", "RED", "main", "plt"]
@@ -24,7 +25,7 @@ def main(script, compute, draw):
     parser.add_argument("--fast", action="store_true", help="coarser, for a quick look")
     parser.add_argument("--out", type=Path, default=Path(script).parent, metavar="DIR", help="where to write")
     arguments = parser.parse_args()
-    data = compute(arguments.fast)
+    data = one_thread(compute)(arguments.fast)
     arguments.out.mkdir(parents=True, exist_ok=True)
     target = arguments.out / Path(script).stem
     with plt.rc_context(STYLE):
