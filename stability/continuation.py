@@ -25,12 +25,12 @@ from .flows import Dune, Vortex
 from .flows.base import parameter
 from .layer import FIELDS, Layer, Profile, residuals
 from .mode import TOLERANCE
+from .optimum import SEARCH
 from .threads import one_thread
 
 THESIS_RESIDUAL = 1e-3  # default tolerance of bvp4c and of solve_bvp
 THESIS_DELTA = 0.01  # grain size over depth of the layer
 THESIS_DEPTH = 100.0  # depth of the fluid times k, where it stands for an unbounded fluid
-SEARCH = (1e-2, 100.0)  # default range of k for the fastest growing wavenumber
 
 
 _RESIDUALS = (1e-4, 1e-6, 1e-7, 1e-8)  # tolerances of solve_bvp tried in turn

@@ -192,8 +192,8 @@ def check_search(search):
 @one_thread
 def _optimum(flow, search, tolerance, max_degree, assembly):
     assembly = assembly.serving(flow) if assembly else Assembly(flow)
-    look = Solver(flow, max(tolerance, _ROUGH), max_degree, assembly, bars=False)
     solver = Solver(flow, tolerance, max_degree, assembly)
+    look = solver.rough(_ROUGH)
     try:
         modes, status = _look(look, *search)
         maxima = [_refine(solver, left, right) for left, right in zip(modes, modes[1:], strict=False)
