@@ -11,7 +11,7 @@ import numpy as np
 from style import BLUE, GREY, main, plt
 
 from stability import dispersion, flows
-from stability.mode import Solver
+from stability.solver import Solver
 from stability.spectra import finite_rates
 from stability.threads import one_thread
 

@@ -13,7 +13,7 @@ from style import RED, main, plt
 
 from stability import flows, spectrum
 from stability.energy import condition_numbers, energy
-from stability.mode import Solver
+from stability.solver import Solver
 
 FLOW, K, DEGREE = flows.Poiseuille(Re=1e4), 1.0, 128
 CENTRE = 0.5 - 0.4j  # of the part of the plane of c that is drawn

@@ -20,7 +20,7 @@ from style import BLUE, GREEN, GREY, ORANGE, RED, main, plt
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 import competitors  # noqa: E402
 
-from stability import continuation, flows  # noqa: E402
+from stability import bvp, flows  # noqa: E402
 from stability.compare import compare, timed  # noqa: E402
 from stability.threads import one_thread  # noqa: E402
 from stability.wavy_wall import response  # noqa: E402
@@ -72,16 +72,16 @@ def measured(found, exact):
 @contextmanager
 def numerical_jacobians():
     """solve_bvp as it is called by default: without the Jacobians of the equations and conditions."""
-    original = continuation.solve_bvp
+    original = bvp.solve_bvp
 
     def plain(*arguments, fun_jac, bc_jac, **options):
         return original(*arguments, **options)
 
-    continuation.solve_bvp = plain
+    bvp.solve_bvp = plain
     try:
         yield
     finally:
-        continuation.solve_bvp = original
+        bvp.solve_bvp = original
 
 
 def textbook(flow, k, exact, largest):

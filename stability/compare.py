@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from .errors import ModeLost, ParameterError
-from .mode import DEGREES, Solver
 from .relation import dispersion
+from .solver import DEGREES, Solver
 from .spectra import finite_rates, spectrum
 from .threads import one_thread
 from .tracking import follow, surface_mode
@@ -185,7 +185,7 @@ def _bvp(flow, mode):
 
 def _bvp_thesis(flow, mode):
     """The thesis's setting, from its own tolerance on; the bias of the problem stays."""
-    from .continuation import thesis_setting
+    from .thesis import thesis_setting
 
     try:
         setting = thesis_setting(flow)

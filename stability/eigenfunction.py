@@ -14,7 +14,8 @@ from numpy.polynomial import chebyshev as C
 from . import chebyshev
 from .errors import ParameterError
 from .layer import FIELDS
-from .mode import DEGREES, Mode, Solver
+from .mode import Mode
+from .solver import DEGREES, Solver
 
 _SAMPLES = 96  # points that carry the coefficients of the base flow, and the maximum of |u| on each layer
 _BISECTIONS = 60

@@ -17,7 +17,7 @@ from numpy.polynomial import chebyshev as C
 from numpy.polynomial import legendre as L
 
 from . import chebyshev
-from .mode import Solver
+from .solver import Solver
 
 
 @dataclass(frozen=True)

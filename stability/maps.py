@@ -19,13 +19,13 @@ from .checks import check_wavenumbers
 from .errors import ParameterError, StabilityError, WorkersLost
 from .flows.base import check_parameter
 from .journal import Journal
-from .mode import DEGREES, TOLERANCE
 from .neutral import check_parameter_name, critical_sweep
 from .optimum import k_max_sweep
 from .output import Row, header_of
 from .pool import processes
 from .record import Record
 from .relation import dispersion
+from .solver import DEGREES, TOLERANCE
 from .wellposed import flag_outgrown, outgrown
 
 if TYPE_CHECKING:

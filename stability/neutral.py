@@ -18,10 +18,10 @@ import numpy as np
 from .checks import check_flag, check_wavenumbers, shown
 from .errors import ModeLost, NotResolved, ParameterError
 from .flows.base import check_flow
-from .mode import DEGREES, TOLERANCE, check_accuracy
 from .output import Row
 from .plane import Plane
 from .record import Record
+from .solver import DEGREES, TOLERANCE, check_accuracy
 from .threads import one_thread
 from .tracking import surface_mode
 
@@ -40,7 +40,6 @@ _POLISH = 6
 _ASTRAY = 4.0  # factor in the value beyond which Newton's method is not trusted
 _STRIDE = 1e-4  # in log k, to difference the gradient
 _LARGEST = 0.4  # step of Newton in log k, and relative in the parameter
-_SLOPE_ERROR = 4.0  # error of d sigma/dk in units of error of sigma / k (measured)
 _ARC = 0.02, 0.25  # first and largest step along the curve, in log k and log value
 _TURN = 0.15  # angle between neighbouring tangents at which the step is kept
 _POINTS = 400
@@ -190,7 +189,7 @@ def _nose(plane, rough, point):
             break
     bend = jacobian[1, 0] * point.k**rough.power
     error = (point.mode.error + abs(point.growth)) / abs(point.by_value.real)
-    k_error = point.k * (_SLOPE_ERROR * point.mode.error + abs(point.gradient[0])) / abs(bend)
+    k_error = point.k * (point.k * point.mode.slope_error + abs(point.gradient[0])) / abs(bend)
     return _record(point, plane.vary, error, k_error, plane.tolerance)
 
 

@@ -15,9 +15,10 @@ import numpy as np
 from .checks import check_flag, check_wavenumbers, shown
 from .errors import ModeLost, NotResolved, ParameterError
 from .flows.base import check_flow
-from .mode import DEGREES, TOLERANCE, Assembly, Mode, Solver, check_accuracy
+from .mode import Mode
 from .output import Row
 from .record import Record
+from .solver import DEGREES, TOLERANCE, Assembly, Solver, check_accuracy
 from .threads import one_thread
 from .tracking import follow, surface_mode, survey
 
@@ -32,7 +33,6 @@ _STEP = 0.5  # largest of the global look, in log k
 _DECAYED = 10.0  # the look ends once the mode has decayed over this factor in k ...
 _SHORT = 10.0  # ... and waves are this short: a second branch may grow where the first has decayed
 _ITERATIONS = 20
-_SLOPE_ERROR = 4.0  # error of d sigma/dk in units of error of sigma / k (measured)
 
 
 @dataclass(frozen=True)
@@ -264,7 +264,7 @@ def _refine(solver, low, high):
         low, high = (mode, high) if slope > 0 else (low, mode)
         if abs(slope) < 1e-13 * abs(curvature) * mode.k or high.k - low.k < 1e-14 * mode.k:
             break
-    return Maximum(mode.k, float((abs(slope) + _SLOPE_ERROR * mode.error / mode.k) / abs(curvature)), mode)
+    return Maximum(mode.k, float((abs(slope) + mode.slope_error) / abs(curvature)), mode)
 
 
 def _slope_zero(low, high):

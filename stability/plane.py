@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from .errors import ModeLost, ParameterError
-from .mode import Solver
 from .sensitivity import parameter_slope
+from .solver import Solver
 from .spectra import dense_degrees, finite_rates, leading_modes
 
 _NEAR = 0.6  # in log k

@@ -10,9 +10,10 @@ import numpy as np
 from .checks import check_flag, check_options, check_wavenumbers
 from .errors import INTERRUPTED, ModeLost
 from .flows.base import check_flow
-from .mode import DEGREES, TOLERANCE, Mode, Solver, check_accuracy, require
+from .mode import Mode, require
 from .output import Row
 from .record import Record
+from .solver import DEGREES, TOLERANCE, Solver, check_accuracy
 from .spectra import converged_rates, leading_modes, polished
 from .threads import one_thread
 from .tracking import Collision, follow, surface_mode

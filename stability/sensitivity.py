@@ -13,9 +13,10 @@ import numpy as np
 from . import chebyshev
 from .eigenfunction import sharpened
 from .errors import ParameterError
-from .mode import Mode, Solver
+from .mode import Mode
 from .output import Row
 from .record import Record
+from .solver import Solver
 from .system import System
 
 if TYPE_CHECKING:

@@ -17,9 +17,10 @@ from scipy.linalg import qr
 from .checks import check_flag, check_integer, check_wavenumber
 from .errors import ModeLost
 from .flows.base import check_flow
-from .mode import DEGREES, TOLERANCE, Mode, Solver, check_accuracy, require
+from .mode import Mode, require
 from .output import Row
 from .record import Record
+from .solver import DEGREES, TOLERANCE, Solver, check_accuracy
 from .threads import one_thread
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from math import copysign, exp, log
 import numpy as np
 
 from .errors import ModeLost
-from .mode import transfer
+from .solver import transfer
 
 _FIRST_STEP = 0.3  # in log k
 _LARGEST_STEP = 0.6

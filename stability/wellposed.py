@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from .mode import DEGREES as RUNGS
-from .mode import Assembly, Solver
 from .relation import dispersion
 from .rheology import condition, ill_posed, short_wave_growth
+from .solver import DEGREES as RUNGS
+from .solver import Assembly, Solver
 from .spectra import Spectrum, finite_rates
 from .threads import one_thread
 

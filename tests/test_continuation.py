@@ -10,14 +10,13 @@ import references
 from stability import continuation, dispersion, flows, k_max
 from stability.cli import main
 from stability.continuation import (
-    RegularisedVortex,
     bounded_maximum,
     continue_in,
     continue_in_k,
-    thesis_setting,
 )
 from stability.errors import NotResolved, ParameterError
 from stability.layer import Layer
+from stability.thesis import RegularisedVortex, thesis_setting
 
 WAVENUMBERS = np.geomspace(1e-2, 5, 4)
 GIVEN_UP = {"vortex": 12, "dune": 4}  # of 80 points each, with the seed below

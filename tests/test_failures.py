@@ -14,10 +14,12 @@ from scipy.integrate import solve_bvp
 from scipy.linalg import eig
 
 from stability import continuation, dispersion, flows, k_max
-from stability.continuation import Problem, bounded_maximum, continue_in_k, thesis_setting
+from stability.bvp import Problem
+from stability.continuation import bounded_maximum, continue_in_k
 from stability.layer import Layer, Profile
-from stability.mode import Solver
+from stability.solver import Solver
 from stability.spectra import finite_rates
+from stability.thesis import thesis_setting
 from stability.wavy_wall import response
 
 VORTEX, DUNE = flows.Vortex(slope_deg=30.0, Fr2=0.1), flows.Dune(shields=2.0, mu1=0.4, b=1.0, Re=10.0)
@@ -167,7 +169,6 @@ def test_yield_surface_needs_the_singular_term(monkeypatch):
     assert abs(point.sigma - DUNE_1) < 1e-8
     monkeypatch.setattr(Unsplit, "_evaluate", unsplit)
     monkeypatch.setattr(continuation, "Problem", Unsplit)
-    monkeypatch.setattr(continuation, "_NODES", 500)
     found = continue_in_k(DUNE, [1.0], residual=1e-5, guess=DUNE_1)
     assert found.lost or abs(found.sigma[0] - DUNE_1) > 1e-4
 

@@ -14,8 +14,8 @@ from stability import ParameterError, StabilityError, dispersion, flows, k_max, 
 from stability.angles import cot_deg
 from stability.checks import LARGEST, check_wavenumbers
 from stability.flows import FLOWS
-from stability.mode import Solver
 from stability.neutral import critical
+from stability.solver import Solver
 from stability.specs import parse_spec
 
 SEED, POINTS, TRUTH = 9, 30, 35

@@ -10,8 +10,8 @@ from samples import dunes, reference, vortices
 from stability import NotResolved, dispersion, flows, tracking
 from stability.flows import vortex
 from stability.layer import Layer
-from stability.mode import Solver
 from stability.refine import refine
+from stability.solver import Solver
 
 # Half a unit in the last digit of the multi-precision values (references.py, growth rates at slope 30 deg, Fr2 0.1).
 VORTICES = {0.1: -0.0068518958810, 0.5: -0.1350310816678, 1: -0.3195259582778, 2: -0.4529302727400,

@@ -9,9 +9,9 @@ import pytest
 from stability import NotResolved, ParameterError, flows, spectrum
 from stability.cli import main
 from stability.energy import condition_numbers, energy
-from stability.mode import Solver
 from stability.neutral import critical, critical_sweep, neutral_curve
 from stability.sensitivity import parameter_slope
+from stability.solver import Solver
 
 FLOWS = [
     (flows.Poiseuille(), 1.0, "Re"),

@@ -5,8 +5,8 @@ import pytest
 from twins import table, wrong_coefficient
 
 from stability import flows, spectrum
-from stability.mode import Solver
 from stability.neutral import critical
+from stability.solver import Solver
 
 MISPRINTED = {12, 25, 27, 32}  # modes of Orszag's Table 5 with an error of up to a unit in the last digit
 

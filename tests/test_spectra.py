@@ -5,7 +5,7 @@ import pytest
 from samples import reference
 
 from stability import NotResolved, ParameterError, flows, spectrum
-from stability.mode import Solver
+from stability.solver import Solver
 from stability.spectra import finite_rates
 
 

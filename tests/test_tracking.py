@@ -5,7 +5,7 @@ import pytest
 import references
 
 from stability import ModeLost, dispersion, flows
-from stability.mode import Solver
+from stability.solver import Solver
 from stability.tracking import follow, surface_mode
 
 

@@ -9,8 +9,8 @@ from pathlib import Path
 from ..errors import INTERRUPTED, ParameterError
 from ..flows import FLOWS
 from ..flows.base import allowed
-from ..mode import DEGREES, TOLERANCE, check_accuracy
 from ..output import check_writable, header_of, render, terminal_width, whole_file, write
+from ..solver import DEGREES, TOLERANCE, check_accuracy
 from ..specs import parse_spec
 from .progress import Bar
 

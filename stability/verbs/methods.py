@@ -23,7 +23,7 @@ def method_of(arguments, flow, tolerance):
         raise ParameterError("--delta: only --method bvp-thesis regularises the free surface")
     if arguments.method == "collocation":
         return None
-    from ..continuation import THESIS_RESIDUAL, thesis_setting  # scipy.integrate is slow to import
+    from ..thesis import THESIS_RESIDUAL, thesis_setting
 
     if arguments.method == "bvp":
         return {"tolerance": tolerance}
