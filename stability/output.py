@@ -19,6 +19,8 @@ from .errors import ParameterError
 
 Row = dict[str, Any]
 _LAYOUTS = ((10, 2), (8, 2), (6, 2), (6, 1), (4, 1))  # digits and spaces between columns of a table, widest first
+_ROUGH = "error", "reported", "seconds", "condition"  # endings of the columns that take two digits
+_LABELS = 2  # columns that every block of a split table begins with
 _FEW = 4  # digits at which lists give way to their length
 _PREFIX = 100  # bytes of a file's name that its temporary file shows
 
@@ -68,15 +70,35 @@ def _csv(header, rows):
 def table(rows: list[Row], width: int | None = None) -> str:
     """Return rows as a table with aligned columns; at least one row.
 
-    Where it is wider than `width`, digits, spaces and lists give way; a long status may still stand out.
+    Where it is wider than `width`, digits, spaces and lists give way, and if that is not enough it is split into
+    blocks of columns; a long status may still stand out.
     """
-    for digits, gap in _LAYOUTS:
-        text = _table(rows, digits, gap)
-        longest = max(len(line) - max(len(str(row.get("status", ""))) - len("resolved"), 0)
-                      for line, row in zip(text.splitlines(), (rows[0], *rows), strict=True))
-        if width is None or longest <= width:
-            break
-    return text
+    for layout in _LAYOUTS:
+        text = _table(rows, *layout)
+        if width is None or _width(rows, text) <= width:
+            return text
+    return "\n".join(_table(part, *_LAYOUTS[-1]) for part in _blocks(rows, width))
+
+
+def _width(rows, text):
+    """Length of the longest line of a table; of a long status the length of a short one."""
+    return max(len(line) - max(len(str(row.get("status", ""))) - len("resolved"), 0)
+               for line, row in zip(text.splitlines(), (rows[0], *rows), strict=True))
+
+
+def _blocks(rows, width):
+    """Yield the rows with as many of their columns as fit, each time after the first ones."""
+    names = list(rows[0])
+    labels, rest = names[:_LABELS], names[_LABELS:]
+    while rest:
+        count = len(rest)
+        while True:
+            part = [{name: row[name] for name in labels + rest[:count]} for row in rows]
+            if count == 1 or _width(part, _table(part, *_LAYOUTS[-1])) <= width:
+                break
+            count -= 1
+        yield part
+        rest = rest[count:]
 
 
 def terminal_width() -> int | None:
@@ -102,7 +124,7 @@ def _cell(key, value, digits):
     if isinstance(value, list):
         return " ".join(f"({k:.6g}, {growth:.4g})" for k, growth in value) or "-"
     if isinstance(value, float):
-        return f"{value:.1e}" if key.endswith("error") else f"{value:.{digits}g}"
+        return f"{value:.1e}" if key.endswith(_ROUGH) else f"{value:.{digits}g}"
     return str(value)
 
 

@@ -129,6 +129,10 @@ def test_a_nearby_parameter_is_suggested(capsys):
 
 
 BAD = [
+    (("kmax", "dune", "--over", "Re=1,2", "--over", "shields=2"),
+     "--over: given twice, with 'Re=1,2' and 'shields=2'; join values with commas, and sweep several parameters with: "
+     "stability map"),
+    (("dispersion", "dune", "--k", "1", "--k", "2"), "--k: given twice, with '1' and '2'; join values with commas"),
     (("flows", "vrtex"), "unknown flow 'vrtex' (did you mean 'vortex'?)"),
     (("dispersion", "vrtex", "--k", "1"), "unknown flow 'vrtex'"),
     (("dispersion", "dune", "--Rex", "3", "--k", "1"), "unknown option '--Rex'"),

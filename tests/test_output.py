@@ -27,6 +27,24 @@ def test_digits_give_way_to_the_width(rows, width):
     assert len({len(line) for line in lines[1:]}) == 1
 
 
+def test_what_no_layout_fits_is_split_into_blocks():
+    """Every column once, the first ones again in each block, no line beyond the width."""
+    rows = [dict(zip(("parameter", "value", *(f"column_{i}" for i in range(9))), (name, *range(10)), strict=True))
+            for name in ("shields", "depth")]
+    for width in (34, 60, 80):
+        blocks = table(rows, width).split("\n\n")
+        assert max(map(len, table(rows, width).splitlines())) <= width
+        heads = [block.split("\n")[0].split() for block in blocks]
+        assert len(heads) > 1
+        assert all(head[:2] == ["parameter", "value"] for head in heads)
+        assert [name for head in heads for name in head[2:]] == list(rows[0])[2:]
+
+
+def test_errors_and_times_take_two_digits():
+    assert table([{"seconds": 1.23456e-5, "reported": 0.1234, "growth_rate": 0.1234}]).split()[3:] == \
+        ["1.2e-05", "1.2e-01", "0.1234"]
+
+
 def test_a_long_status_is_shown_in_full():
     rows = [*ROWS, {**ROWS[0], "status": "error 1.1e-04 exceeds tolerance at degree 14"}]
     assert table(rows, 60).splitlines()[-1].endswith("tolerance at degree 14")

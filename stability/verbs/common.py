@@ -15,6 +15,7 @@ from ..specs import parse_spec
 from .progress import Bar
 
 SPEC = "a number, a list a,b,c, or a range a:b:n (log-spaced) or a:b:n:lin"
+MORE = ", and sweep several parameters with: stability map"  # where --over sweeps one
 RESOLVED = "resolved"  # the status of a good row begins with it
 INTERRUPTED_STATUS = 130  # of the command
 _DONE = (RESOLVED, "no derivative")  # or with this, where there is none to compute
@@ -61,6 +62,17 @@ class _Help(argparse.Action):
         parser.exit()
 
 
+class Once(argparse.Action):
+    """An option that asks for values: given twice, the first ones must not get lost."""
+
+    def __call__(self, parser, namespace, values, option_string=None):
+        before = getattr(namespace, self.dest)
+        if before is not None:
+            raise ParameterError(f"{option_string}: given twice, with {before!r} and {values!r}; "
+                                 f"join values with commas{self.const or ''}")
+        setattr(namespace, self.dest, values)
+
+
 def _add_parameters(verb):
     """Add a flag for every parameter of every flow, and return their group; `_Help` shows those of one flow."""
     group = verb.add_argument_group("parameters of the flow", f"listed by: {verb.prog} FLOW --help")
@@ -81,7 +93,7 @@ def nearest_flag(arguments, unknown):
 
 
 def k_option(verb):
-    verb.add_argument("--k", required=True, metavar="SPEC", help=f"wavenumbers: {SPEC}")
+    verb.add_argument("--k", action=Once, required=True, metavar="SPEC", help=f"wavenumbers: {SPEC}")
 
 
 def flow_class(name):

@@ -2,7 +2,7 @@
 
 from ..errors import ParameterError
 from ..specs import parse_spec
-from .common import RESOLVED, add_verb, flow_of, report
+from .common import RESOLVED, Once, add_verb, flow_of, report
 from .progress import Bar
 
 
@@ -12,7 +12,7 @@ def add(verbs):
 
 
 def _k_option(verb):
-    verb.add_argument("--k", required=True, metavar="K", help="wavenumber")
+    verb.add_argument("--k", action=Once, required=True, metavar="K", help="wavenumber")
 
 
 def _run(arguments):

@@ -3,7 +3,7 @@
 from ..errors import INTERRUPTED, StabilityError
 from ..optimum import Optima, Optimum, k_max_sweep
 from ..wellposed import flag_outgrown
-from .common import SPEC, add_verb, collect, flow_of, options_of, report, sweep_of
+from .common import MORE, SPEC, Once, add_verb, collect, flow_of, options_of, report, sweep_of
 from .methods import method_of, method_options
 
 
@@ -13,7 +13,8 @@ def add(verbs):
 
 
 def _over_option(verb):
-    verb.add_argument("--over", metavar="NAME=SPEC", help=f"parameter to sweep and its values: {SPEC}")
+    verb.add_argument("--over", action=Once, const=MORE, metavar="NAME=SPEC",
+                      help=f"parameter to sweep and its values: {SPEC}")
 
 
 def _run(arguments):

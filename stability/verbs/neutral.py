@@ -2,7 +2,7 @@
 
 from ..errors import INTERRUPTED, ParameterError
 from ..specs import parse_spec
-from .common import SPEC, add_verb, collect, flow_of, options_of, report, sweep_of
+from .common import MORE, SPEC, Once, add_verb, collect, flow_of, options_of, report, sweep_of
 from .critical import long_wave_option, vary_option
 
 
@@ -14,9 +14,10 @@ def add(verbs):
 
 def _over_or_k_option(verb):
     either = verb.add_mutually_exclusive_group(required=True)
-    either.add_argument("--over", metavar="NAME=SPEC",
+    either.add_argument("--over", action=Once, const=MORE, metavar="NAME=SPEC",
                         help=f"second parameter: zero growth of the most unstable wavenumber at each value; {SPEC}")
-    either.add_argument("--k", metavar="SPEC", help=f"wavenumbers: all branches of the neutral curve at each; {SPEC}")
+    either.add_argument("--k", action=Once, metavar="SPEC",
+                        help=f"wavenumbers: all branches of the neutral curve at each; {SPEC}")
 
 
 def _run(arguments):

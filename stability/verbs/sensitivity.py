@@ -3,7 +3,7 @@
 from ..errors import ModeLost, ParameterError
 from ..relation import MODES, default_mode, dispersion
 from ..specs import parse_spec
-from .common import add_verb, flow_of, options_of, report
+from .common import Once, add_verb, flow_of, options_of, report
 
 _MODES = MODES[:2]  # a mode that can be followed
 
@@ -14,7 +14,7 @@ def add(verbs):
 
 
 def _k_option(verb):
-    verb.add_argument("--k", required=True, metavar="K", help="wavenumber")
+    verb.add_argument("--k", action=Once, required=True, metavar="K", help="wavenumber")
 
 
 def _mode_option(verb):
