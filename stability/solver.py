@@ -137,6 +137,10 @@ class Solver:
     def _fits(self, mode):
         return mode.truncation <= max(mode.rounding, self.truncation * abs(mode.sigma))
 
+    def resolves(self, mode):
+        """Whether the truncation error is within the tolerance, or could be at a larger degree."""
+        return mode.degree < self.degrees[-1] or mode.truncation <= self.tolerance * abs(mode.sigma)
+
     def overlap(self, old, mode):
         """Product of the two biorthogonal overlaps of a new mode with an old one: near 1 for one mode, 0 for two."""
         x, y = transfer(self, (old.degree, old.x, old.y), mode.degree)

@@ -21,7 +21,8 @@ _SMALLEST_STEP = 1e-8
 _PREDICTION = 0.05  # relative error of the predictor at which the step length is kept
 _BEND = 0.1  # largest departure of a step from the mean of its end slopes, relative
 _OVERLAP = 0.4  # largest deviation of the overlap from 1
-_STEPS = 1000
+_STEPS, _STRETCH = 1000, 100  # attempts, and after how many of them it is asked whether those left can suffice
+_BLIND = 100  # attempts in a row that the largest degree does not resolve
 _TRUST = 0.01  # largest relative error of a mode from which a walk goes on
 _GRID = 0.05  # spacing in log k of the wavenumbers that a survey lands on
 _FEW = 3  # wavenumbers that are walked to one by one
@@ -215,14 +216,22 @@ class _Walk:
 
     def steps(self, k):
         """Step to wavenumber k, pausing after every attempt that moved."""
-        for _ in range(_STEPS):
+        behind, blind = self.now.k, 0
+        for attempt in range(_STEPS):
             gap, last = log(k / self.now.k), self.now
             if gap == 0:
                 return
+            if attempt and attempt % _STRETCH == 0:
+                if abs(log(last.k / behind)) * (_STEPS - attempt) < abs(gap) * _STRETCH:
+                    break
+                behind = last.k
+            blind = 0 if self.solver.resolves(last) else blind + 1
+            if blind > _BLIND:
+                raise self._lost(f"degree {last.degree} does not resolve it any more")
             self._advance(k if abs(gap) <= self.step else self._land(self.now.k * exp(copysign(self.step, gap))))
             if self.now is not last:
                 yield
-        raise self._lost(f"{_STEPS} steps did not reach k = {k:g}")
+        raise self._lost(f"{_STEPS} steps do not reach k = {k:g}")
 
     def _land(self, k):
         """The last grid point before k, if that is not much nearer, else k."""

@@ -121,6 +121,9 @@ LONG = {
     "a walk on unresolved modes": fuzz.Point(
         "rollwave", {"slope_deg": 89.77200581649878, "Fr2": 1539.6, "mu1": 1.13e-3, "mu2": 287.8}, "dispersion",
         {"k": 1.62, "strict": False, "max_degree": 64}),
+    "a walk beyond the largest degree": fuzz.Point(
+        "dune", {"shields": 104.1472, "mu1": 77.75874, "b": 8.514796e-06, "Re": 0.0107196, "fluid": "layer"},
+        "dispersion", {"k": 0.0073959939, "strict": False}),
 }
 
 

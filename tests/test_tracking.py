@@ -1,12 +1,15 @@
 """Following a mode: the same mode from either side, collisions met and named, jumps refused."""
 
+from math import exp
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import references
 
 from stability import ModeLost, dispersion, flows
 from stability.solver import Solver
-from stability.tracking import follow, surface_mode
+from stability.tracking import _Walk, follow, surface_mode
 
 
 def test_forwards_and_backwards_meet():
@@ -102,3 +105,42 @@ def test_without_the_check_of_slopes_it_would_jump(monkeypatch):
     flow = flows.Dune(shields=10.0, Re=0.3)
     ends = [dispersion(flow, grid).sigma[-1] for grid in ([8.1], np.geomspace(1e-3, 8.1, 60))]
     assert abs(ends[0] - ends[1]) > 100
+
+
+class Paced(_Walk):
+    """A walk whose attempts all succeed with a given step in log k, at the largest degree."""
+
+    def __init__(self, solver, pace):
+        super().__init__(solver, SimpleNamespace(k=1.0, sigma=1.0, degree=512, truncation=0.0))
+        self.pace, self.attempts = pace, 0
+
+    def _advance(self, k):
+        self.attempts += 1
+        step = self.pace(self.attempts)
+        self.now = SimpleNamespace(**{**vars(self.now), "k": min(k, self.now.k * exp(step))})
+
+
+def test_a_walk_that_cannot_arrive_gives_up_early():
+    flow = flows.Dune(shields=126.0, b=1e-7)
+    slow = Paced(Solver(flow), lambda attempt: 0.005)
+    with pytest.raises(ModeLost, match="1000 steps do not reach k = 1000"):
+        slow.to(1e3)
+    assert slow.attempts == 100
+    stopped = Paced(Solver(flow), lambda attempt: 0.01 if attempt < 150 else 1e-9)
+    with pytest.raises(ModeLost, match="do not reach"):
+        stopped.to(1e3)
+    assert stopped.attempts == 200
+    steady = Paced(Solver(flow), lambda attempt: 0.007)
+    assert steady.to(1e3).k == 1e3
+    assert steady.attempts > 900
+
+
+def test_a_walk_ends_where_the_largest_degree_does_not_suffice():
+    walk = Paced(Solver(flows.Dune()), lambda attempt: 0.05)
+    walk.now.truncation = 1e-6
+    with pytest.raises(ModeLost, match="degree 512 does not resolve it any more"):
+        walk.to(1e3)
+    assert walk.attempts == 100
+    rough = Paced(Solver(flows.Dune(), 1e-5), lambda attempt: 0.05)
+    rough.now.truncation = 1e-6
+    assert rough.to(1e3).k == 1e3
