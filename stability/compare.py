@@ -152,7 +152,7 @@ def _followed(flow, mode, degree):
     start = surface_mode(solver, first) if flow.has_surface_mode() else solver.solve(first, _guess(mode, first))
     path = follow(solver, start, sweep)
     if path.lost:
-        raise ModeLost(path.lost)
+        raise path.lost
     return path.modes[POINTS // 2]
 
 

@@ -23,5 +23,14 @@ class ModeLost(StabilityError):
     """A mode could not be followed without risking a jump to another one."""
 
 
+class StepsExhausted(ModeLost):
+    """A mode changes so fast with k that following it takes too many steps."""
+
+
 class WorkersLost(StabilityError):
     """Worker processes end again and again before they have finished anything."""
+
+
+def naming(flow, reason):
+    """Return the reason with the flow named in front, once."""
+    return reason if reason.startswith(f"{flow}: ") else f"{flow}: {reason}"

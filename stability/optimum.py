@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from .checks import check_flag, check_wavenumbers, shown
-from .errors import ModeLost, NotResolved, ParameterError
+from .errors import ModeLost, NotResolved, ParameterError, naming
 from .flows.base import check_flow
 from .mode import Mode
 from .output import Row
@@ -65,7 +65,7 @@ class Optimum(Record):
     @property
     def best(self) -> Maximum:
         if not self.maxima:
-            raise NotResolved(f"{self.flow}: {self.status}")
+            raise NotResolved(naming(self.flow, self.status))
         return self.maxima[0]
 
     @property
@@ -163,7 +163,7 @@ def k_max(flow: "Flow", search: tuple[float, float] = SEARCH, *, tolerance: floa
     strict = check_flag("strict", strict)
     (optimum,) = k_max_sweep([check_flow(flow)], search, tolerance=tolerance, max_degree=max_degree)
     if strict and optimum.status != "resolved":
-        raise NotResolved(f"{flow}: {optimum.status}")
+        raise NotResolved(naming(flow, optimum.status))
     return optimum
 
 
@@ -256,7 +256,7 @@ def _refine(solver, low, high):
         near = low if abs(k - low.k) < abs(k - high.k) else high
         path = follow(solver, near, [k])
         if path.lost:
-            raise ModeLost(path.lost)
+            raise path.lost
         mode = path.modes[0]
         slope = _growth_slope(mode)
         if abs(mode.k - near.k) > 1e-6 * mode.k:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from .checks import check_flag, check_options, check_wavenumbers
-from .errors import INTERRUPTED, ModeLost
+from .errors import INTERRUPTED, ModeLost, StepsExhausted
 from .flows.base import check_flow
 from .mode import Mode, require
 from .output import Row
@@ -188,6 +188,8 @@ def _surface(solver, wavenumbers):
     rough = solver.rough(_ROUGH)
     try:
         way = follow(rough, surface_mode(rough, k), [k])
+        if isinstance(way.lost, StepsExhausted):
+            raise way.lost
         if way.lost or way.collisions:  # a close look is needed
             first = surface_mode(solver, k)
         else:
@@ -220,9 +222,9 @@ def _followed(solver, wavenumbers, start):
         solver.prepare(portion)
         path = follow(solver, start, portion)
         found = {mode.k: mode for mode in path.modes}
-        yield found, {k: path.lost for k in portion.tolist() if k not in found}, path.collisions
+        yield found, {k: str(path.lost) for k in portion.tolist() if k not in found}, path.collisions
         if path.lost:
-            yield {}, dict.fromkeys(wavenumbers[first + _PORTION:].tolist(), path.lost), ()
+            yield {}, dict.fromkeys(wavenumbers[first + _PORTION:].tolist(), str(path.lost)), ()
             return
         start = path.modes[-1]
 

@@ -12,7 +12,7 @@ from math import copysign, exp, log
 
 import numpy as np
 
-from .errors import ModeLost
+from .errors import ModeLost, StepsExhausted
 from .solver import transfer
 
 _FIRST_STEP = 0.3  # in log k
@@ -51,12 +51,12 @@ class Collision:
 class Path:
     """Modes at the wavenumbers asked for, in that order, and the collisions met on the way.
 
-    `lost` is "" or says why the mode could not be followed; the modes then end before it.
+    `lost` says why the mode could not be followed, if it could not; the modes then end before it.
     """
 
     modes: tuple
     collisions: tuple
-    lost: str = ""
+    lost: ModeLost | None = None
 
 
 def surface_mode(solver, k):
@@ -100,7 +100,7 @@ def follow(solver, start, wavenumbers):
         return Path(tuple(modes), tuple(walk.collisions))
     except ModeLost as reason:
         reached = wavenumbers[np.abs(np.log(wavenumbers / start.k)) <= abs(log(walk.now.k / start.k))]
-        return Path(tuple(_between(solver, walk.segments, reached)), tuple(walk.collisions), str(reason))
+        return Path(tuple(_between(solver, walk.segments, reached)), tuple(walk.collisions), reason)
 
 
 def _between(solver, segments, wavenumbers):
@@ -227,11 +227,11 @@ class _Walk:
                 behind = last.k
             blind = 0 if self.solver.resolves(last) else blind + 1
             if blind > _BLIND:
-                raise self._lost(f"degree {last.degree} does not resolve it any more")
+                raise self._lost(f"degree {last.degree} does not resolve it any more", StepsExhausted)
             self._advance(k if abs(gap) <= self.step else self._land(self.now.k * exp(copysign(self.step, gap))))
             if self.now is not last:
                 yield
-        raise self._lost(f"{_STEPS} steps do not reach k = {k:g}")
+        raise self._lost(f"{_STEPS} steps do not reach k = {k:g}", StepsExhausted)
 
     def _land(self, k):
         """The last grid point before k, if that is not much nearer, else k."""
@@ -281,9 +281,9 @@ class _Walk:
         self.before, self.now = self.now, mode
         self.segments[-1].append(mode)
 
-    def _lost(self, why):
-        return ModeLost(f"{self.solver.flow}: the mode is lost at k = {self.now.k:.6g}, "
-                        f"sigma = {self.now.sigma:.6g}: {why}")
+    def _lost(self, why, kind=ModeLost):
+        return kind(f"{self.solver.flow}: the mode is lost at k = {self.now.k:.6g}, "
+                    f"sigma = {self.now.sigma:.6g}: {why}")
 
     def _predict(self, k):
         """Extrapolate rate and vectors to k from the last two modes."""

@@ -1,11 +1,14 @@
 """The fastest growing wavenumber: against the references, both branches, and none where nothing grows."""
 
+import re
+
 import mpmath as mp
 import numpy as np
 import pytest
 import references
 
 from stability import NotResolved, dispersion, flows, k_max
+from stability.optimum import Optimum
 
 
 def test_default_dunes():
@@ -61,3 +64,13 @@ def test_flows_that_decay_have_none(flow):
 def test_a_search_that_ends_too_early_says_so():
     with pytest.raises(NotResolved, match="still rises at k = 0.3"):
         k_max(flows.Dune(), search=(1e-2, 0.3))
+
+
+def test_a_refusal_names_the_flow_once():
+    flow = flows.Dune(shields=1.5, mu1=0.5, Re=1e-3, depth=3.0)
+    lost = Optimum(flow, (), f"{flow}: growth follows no power of k")
+    with pytest.raises(NotResolved) as refusal:
+        _ = lost.k_max
+    assert str(refusal.value) == lost.status
+    with pytest.raises(NotResolved, match="^" + re.escape(f"{flow}: no unstable maximum")):
+        _ = Optimum(flow, (), "no unstable maximum for k up to 1000").k_max

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 import references
 
-from stability import ModeLost, dispersion, flows
+from stability import ModeLost, dispersion, flows, relation
+from stability.errors import StepsExhausted
 from stability.solver import Solver
-from stability.tracking import _Walk, follow, surface_mode
+from stability.tracking import Path, _Walk, follow, surface_mode
 
 
 def test_forwards_and_backwards_meet():
@@ -144,3 +145,16 @@ def test_a_walk_ends_where_the_largest_degree_does_not_suffice():
     rough = Paced(Solver(flows.Dune(), 1e-5), lambda attempt: 0.05)
     rough.now.truncation = 1e-6
     assert rough.to(1e3).k == 1e3
+
+
+def test_what_exhausts_a_rough_walk_is_not_walked_again(monkeypatch):
+    """The way to the first wavenumber is walked once more, closely, only where the rough walk met something."""
+    solvers = []
+
+    def follow(solver, start, wavenumbers):
+        solvers.append(solver.tolerance)
+        return Path((), (), StepsExhausted("too many steps"))
+
+    monkeypatch.setattr(relation, "follow", follow)
+    assert dispersion(flows.Dune(), 1.0, strict=False).lost == {1.0: "too many steps"}
+    assert solvers == [1e-4]
