@@ -121,9 +121,9 @@ class Eigenfunction:
         base = self.layers[index].profile(points)
         along = 1j * self.k**self.order
         viscous = _values(base.eta * base.g, s) * (along * v)  # eta u: finite where eta is not
-        fields = (_values(base.g, s) * (along * v), self.k ** (1 + self.order) * w, along * t, n,
-                  -n - 2j * self.k * viscous)
-        return self._scale * np.array(fields, dtype=complex)
+        stresses = base.stress * np.array((along * t, n, -n - 2j * self.k * viscous))
+        velocities = _values(base.g, s) * (along * v), self.k ** (1 + self.order) * w
+        return self._scale * np.array((*velocities, *stresses), dtype=complex)
 
 
 def _values(samples: Any, s: np.ndarray) -> np.ndarray:

@@ -45,13 +45,14 @@ def energy(solver, k, degree):
         if layer.steady:
             continue
         base = layer.profile(nodes)
-        root = np.sqrt(weights * np.abs(base.rho * base.dz))
+        root = np.sqrt(weights * np.abs(base.stress * base.rho * base.dz))
         values = chebyshev.at(nodes, degree)
         for field, row, size in (("v", "along", stretch * base.g), ("w", "across", width)):
             rows = pencil.rows[f"{layer.name}: momentum {row}"]
             dual = _dual(nodes, weights, len(rows))
             state.append(_spread(pencil, pencil.columns[f"{layer.name}.{field}"], (root * size)[:, None] * values))
-            adjoint.append(_spread(pencil, rows, (1j / stretch if field == "v" else 1) * root[:, None] * dual))
+            unit = (1j / stretch if field == "v" else 1) / base.stress
+            adjoint.append(_spread(pencil, rows, unit * root[:, None] * dual))
             state[-1] = state[-1] * (1j if field == "v" else 1)
     for surface in flow.surfaces:
         state.append(_spread(pencil, pencil.columns[surface], np.ones((1, 1))))

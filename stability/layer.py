@@ -41,6 +41,8 @@ class Profile:
 
     `dz` is the slope dz/ds of the map from 0 <= s <= 1 to the layer; `dg` is dg/ds. The shear-rate
     equation is multiplied by `clear`, so that its coefficients become polynomials and its matrix banded.
+    `rho`, `eta`, `beta` and the unknown stresses are in units of `stress`: viscous flows measure them by their
+    viscosity, or else all stresses would be enormous beside the velocities at small Re.
     """
 
     dz: Any
@@ -53,6 +55,7 @@ class Profile:
     g: Any = 1.0
     dg: Any = 0.0
     clear: Any = 1.0
+    stress: Any = 1.0
 
 
 @dataclass(frozen=True)

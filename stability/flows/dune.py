@@ -71,12 +71,12 @@ class Dune(Flow):
         if self.fluid == "closed-form":
             return (*bed, surface.t - 1j * stress * names.R * s0)
         wall, top = edges.fluid
-        return (*bed, surface.t - stress * self.Re * wall.t, wall.v - 1j * s0, wall.w, *self._far(top, k))
+        return (*bed, surface.t - stress * wall.t, wall.v - 1j * s0, wall.w, *self._far(top, k))
 
     def _far(self, top, k):
         """No slip on a lid; irrotational decay exp(-k z) above the vorticity of an unbounded fluid."""
         if isinf(self.depth):
-            return top.v + k * top.w, top.t - 2 * k**2 / self.Re * top.w
+            return top.v + k * top.w, top.t - 2 * k**2 * top.w
         return top.v, top.w
 
     def long_wave(self, k):
@@ -118,8 +118,8 @@ def bed_profile(s, excess, mu1, b):
 
 
 def fluid_profile(s, height, Re):
-    """Newtonian fluid in linear shear U = z, 0 <= z <= height."""
-    return Profile(dz=height, U=height * s, dU=1.0, eta=1 / Re, beta=1 / Re)
+    """Newtonian fluid in linear shear U = z, 0 <= z <= height; stresses in units of the base shear stress."""
+    return Profile(dz=height, U=height * s, dU=1.0, rho=Re, eta=1.0, beta=1.0, stress=1 / Re)
 
 
 def _vorticity_depth(k, Re):

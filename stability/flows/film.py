@@ -32,15 +32,15 @@ class Film(Flow):
     def conditions(self, edges, names):
         """No slip on the plane; on the displaced surface no shear stress and the pressure of surface tension.
 
-        The base stresses there are s0 times their slopes across the film, -2/Re and -2 cot(slope)/Re.
+        The base stresses there are s0 times their slopes across the film, -2 and -2 cot(slope) in viscous units.
         """
         s0 = names.s0
         wall, surface = edges.liquid
         return (
             wall.v,
             wall.w,
-            surface.t + 2j / self.Re * s0,
-            surface.n + (2 * self.cot_slope / self.Re + self.We * names.k**2) * s0,
+            surface.t + 2j * s0,
+            surface.n + (2 * self.cot_slope + self.Re * self.We * names.k**2) * s0,
             (names.rate + 1j) * s0 - surface.w,
         )
 
@@ -54,4 +54,5 @@ class Film(Flow):
 
 
 def profile(s, Re):
-    return Profile(dz=1.0, U=2 * s - s**2, dU=2 - 2 * s, eta=1 / Re, beta=1 / Re)
+    """Stresses in viscous units, viscosity * surface speed / depth."""
+    return Profile(dz=1.0, U=2 * s - s**2, dU=2 - 2 * s, rho=Re, eta=1.0, beta=1.0, stress=1 / Re)

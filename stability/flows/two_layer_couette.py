@@ -37,9 +37,9 @@ class TwoLayerCouette(Flow):
     def layers(self, names):
         m, n = self.viscosity_ratio, self.depth_ratio
         return (
-            Layer("lower", lambda s: profile(s, n, 0.0, 1 / (m + n), m / self.Re, self.density_ratio),
+            Layer("lower", lambda s: profile(s, n, 0.0, 1 / (m + n), m, self.density_ratio, self.Re),
                   steady=self.density_ratio == 0),
-            Layer("upper", lambda s: profile(s, 1.0, self.interface_speed, m / (m + n), 1 / self.Re, 1.0)),
+            Layer("upper", lambda s: profile(s, 1.0, self.interface_speed, m / (m + n), 1.0, 1.0, self.Re)),
         )
 
     def conditions(self, edges, names):
@@ -50,14 +50,14 @@ class TwoLayerCouette(Flow):
         m, n, s0 = self.viscosity_ratio, self.depth_ratio, names.s0
         wall, below = edges.lower
         above, plate = edges.upper
-        weight = (self.density_ratio - 1) * self.gravity
+        stiffness = self.Re * ((self.density_ratio - 1) * self.gravity + self.tension * names.k**2)
         return (
             wall.v,
             wall.w,
             above.v - below.v - 1j * (m - 1) / (m + n) * s0,
             above.w - below.w,
             above.t - below.t,
-            above.n - below.n - (weight + self.tension * names.k**2) * s0,
+            above.n - below.n - stiffness * s0,
             (names.rate + 1j * self.interface_speed) * s0 - below.w,
             plate.v,
             plate.w,
@@ -74,7 +74,7 @@ class TwoLayerCouette(Flow):
         return self.depth_ratio / (self.viscosity_ratio + self.depth_ratio)
 
 
-def profile(s, depth, speed, shear_rate, viscosity, density):
-    """Linear shear above the speed at s = 0."""
+def profile(s, depth, speed, shear_rate, viscosity, density, Re):
+    """Linear shear above the speed at s = 0; stresses in units of those of the upper liquid at unit shear rate."""
     U = speed + shear_rate * depth * s
-    return Profile(dz=depth, U=U, dU=shear_rate, eta=viscosity, beta=viscosity, rho=density)
+    return Profile(dz=depth, U=U, dU=shear_rate, rho=density * Re, eta=viscosity, beta=viscosity, stress=1 / Re)

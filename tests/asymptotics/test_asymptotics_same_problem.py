@@ -47,11 +47,12 @@ class Case:
         """stability's residuals with the slopes that our system gives; zero if both agree."""
         profile = profile or self.profile
         fields = sp.symbols("v w t n")
-        scales = (k ** (1 + self.order), sp.I * k**self.order * profile.g, sp.I * k**self.order, sp.Integer(1))
+        scales = (k ** (1 + self.order), sp.I * k**self.order * profile.g,
+                  sp.I * k**self.order * profile.stress, profile.stress)
         ours = [scale * field for scale, field in zip(scales, (fields[1], fields[0], *fields[2:]), strict=True)]
         dw, du, dt, dn = self.stretch * self.matrix * sp.Matrix(ours)
         dg = sp.diff(profile.g, zeta) / sp.diff(self.s, zeta)
-        slopes = (du / scales[1] - dg / profile.g * fields[0], dw / scales[0], dt / scales[2], dn)
+        slopes = (du / scales[1] - dg / profile.g * fields[0], dw / scales[0], dt / scales[2], dn / scales[3])
         rows = residuals(profile, k, 0 if self.steady else rate, fields, slopes, self.order)
         return [exact(row) for row in rows]
 
@@ -97,7 +98,7 @@ def test_the_equations_are_the_same(name):
 @pytest.mark.parametrize(("name", "coefficient"), [
     *(("vortex", field) for field in ("dz", "eta", "beta", "rho")),
     *(("dune bed", field) for field in ("dz", "eta", "beta", "rho", "U", "dU", "alpha", "dg")),
-    *(("dune fluid", field) for field in ("dz", "eta", "beta", "rho", "U", "dU")),
+    *(("dune fluid", field) for field in ("dz", "eta", "beta", "rho", "U", "dU", "stress")),
 ])
 def test_one_percent_in_any_coefficient_is_seen(name, coefficient):
     case = CASES[name]()
@@ -130,9 +131,10 @@ def names(*functions):
     return SimpleNamespace(k=k, rate=rate, s0=s0, **{name: sp.Symbol(name) for name in functions})
 
 
-def in_stability_fields(condition, fields, g=1, order=0):
+def in_stability_fields(condition, fields, g=1, order=0, stress=1):
     """Our condition on w, u, t, n as one on stability's v, w, t, n."""
-    scaled = (k ** (1 + order) * fields.w, sp.I * k**order * g * fields.v, sp.I * k**order * fields.t, fields.n)
+    scaled = (k ** (1 + order) * fields.w, sp.I * k**order * g * fields.v, sp.I * k**order * stress * fields.t,
+              stress * fields.n)
     condition = condition.subs({sigma: k ** (1 + order) * rate, linearise.amplitude: s0})
     return condition.subs(dict(zip(linearise.FIELDS, scaled, strict=True)), simultaneous=True)
 
@@ -184,7 +186,7 @@ def test_the_conditions_between_bed_and_fluid_are_the_same():
     flow = SymbolicDune(shields=dune.r**2, mu1=dune.mu1, b=dune.b, Re=fluid.Re, depth=7, fluid="layer")
     theirs = flow.conditions(SimpleNamespace(bed=(yielding, surface), fluid=(wall, lid)), names())
     # the shear of the fluid on the wall is -R s0
-    shear = in_stability_fields(fluid.wall_shear(), wall)
+    shear = in_stability_fields(fluid.wall_shear(), wall, stress=1 / fluid.Re)
     ours = bed_conditions(yielding, surface)
     ours[3] = ours[3].subs(dune.R, -shear / s0)
     ours += [in_stability_fields(condition, wall) for condition in fluid.wall_conditions()]
