@@ -15,6 +15,7 @@ from .checks import check_wavenumbers
 from .errors import ModeLost, NotResolved
 from .optimum import SEARCH
 from .solver import TOLERANCE
+from .status import RESOLVED
 from .threads import one_thread
 
 _RESIDUALS = (1e-4, 1e-6, 1e-7, 1e-8)  # tolerances of solve_bvp tried in turn
@@ -264,7 +265,7 @@ class _Walk:
             if error <= self.tolerance * abs(fine.rate):
                 break
             coarse = fine
-        status = "resolved" if error <= self.tolerance * abs(fine.rate) else \
+        status = RESOLVED if error <= self.tolerance * abs(fine.rate) else \
             f"error {problem.width * error:.1e} exceeds tolerance with {len(fine.mesh)} nodes"
         sigma = problem.width * fine.rate
         return Point(problem.flow, problem.k, complex(sigma), float(problem.width * error), len(fine.mesh),

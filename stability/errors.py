@@ -1,7 +1,5 @@
 """What can go wrong, by name. Messages say what was asked, what was found and what to try."""
 
-INTERRUPTED = "interrupted"  # the status of what a sweep had not reached when it was stopped
-
 
 class StabilityError(Exception):
     """Base of all errors of this package."""

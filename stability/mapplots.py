@@ -6,8 +6,9 @@ import numpy as np
 
 from .errors import ParameterError
 from .plots import BLUE, DISPERSION, GREY, NEUTRAL, OPTIMA, RED
+from .status import is_outgrown, is_settled, is_stable
 
-HATCHES = {"not resolved": "////", "outgrown by an internal mode": "xxxx"}
+HATCHES = {"not resolved": "////", "stable": "....", "outgrown by an internal mode": "xxxx"}
 _SIGNED, _RISING = "RdBu_r", "viridis"
 _DECADES = 20.0  # ratio of values beyond which their logarithm is shown
 _FEW, _MANY = (2, 5), (1.5, 2, 3, 5, 7)  # ticks between powers of ten
@@ -39,8 +40,9 @@ def panel(found, axis, column):
 
 def states(status):
     """Which points are to be hatched, {state: array shaped as the status}."""
-    good, faster = np.char.startswith(status, "resolved"), np.char.endswith(status, "outgrown")
-    return dict(zip(HATCHES, (~good, faster), strict=True))
+    settled, stable, outgrown = (np.vectorize(test, otypes=[bool])(status) for test in
+                                 (is_settled, is_stable, is_outgrown))
+    return dict(zip(HATCHES, (~settled, stable, outgrown), strict=True))
 
 
 def labels(found):

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import status
 from .checks import check_wavenumbers
 from .errors import ParameterError, StabilityError, WorkersLost
 from .flows.base import check_parameter
@@ -26,7 +27,7 @@ from .pool import processes
 from .record import Record
 from .relation import dispersion
 from .solver import DEGREES, TOLERANCE
-from .wellposed import flag_outgrown, outgrown
+from .wellposed import outgrown
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -218,7 +219,7 @@ class Map(Record):
     @property
     def resolved(self) -> np.ndarray:
         """Which points are resolved, in the shape of the axes."""
-        return np.char.startswith(self["status"], "resolved")
+        return np.vectorize(status.is_resolved, otypes=[bool])(self["status"])
 
     def rows(self) -> list[Row]:
         """One dict for each point, the last axis fastest."""
@@ -370,7 +371,7 @@ def compute(piece, attempt=0):
 
 def _k_max_rows(piece):
     def sweep(flows):
-        return flag_outgrown(k_max_sweep(flows, tolerance=piece.tolerance, max_degree=piece.max_degree))
+        return k_max_sweep(flows, tolerance=piece.tolerance, max_degree=piece.max_degree)
 
     for found in _each(sweep, piece.flows):
         yield _nothing(piece, found) if isinstance(found, str) else _optimum_row(found)
@@ -404,8 +405,8 @@ def _relation_rows(piece, relation):
             yield _nothing(piece, f"lost: {relation.lost[k]}")
             continue
         mode = modes[k]
-        status = f"{mode.status}; outgrown" if faster and k >= faster.k else mode.status
-        yield mode.growth_rate, mode.phase_speed, mode.error, mode.degree, status
+        state = status.outgrown(mode.status) if faster and k >= faster.k else mode.status
+        yield mode.growth_rate, mode.phase_speed, mode.error, mode.degree, state
 
 
 def _neutral_rows(piece):

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .errors import NotResolved
+from .status import is_resolved
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -84,6 +85,6 @@ class Mode:
 
 def require(mode):
     """Return the mode if it is resolved, else raise NotResolved."""
-    if mode.status != "resolved":
+    if not is_resolved(mode.status):
         raise NotResolved(f"{mode.flow}, k={mode.k:g}: {mode.status}; raise max_degree or loosen the tolerance")
     return mode

@@ -22,6 +22,7 @@ from .output import Row
 from .plane import Plane
 from .record import Record
 from .solver import DEGREES, TOLERANCE, check_accuracy
+from .status import RESOLVED, is_resolved
 from .threads import one_thread
 from .tracking import surface_mode
 
@@ -113,7 +114,7 @@ def critical(flow: "Flow", vary: str, *, long_wave: bool = False, tolerance: flo
     """
     strict, long_wave = check_flag("strict", strict), check_flag("long_wave", long_wave)
     (point,) = critical_sweep([check_flow(flow)], vary, long_wave=long_wave, tolerance=tolerance, max_degree=max_degree)
-    if strict and point.status != "resolved":
+    if strict and not is_resolved(point.status):
         raise NotResolved(point.status)
     return point
 
@@ -212,7 +213,7 @@ def _jacobian(plane, point):
 
 def _record(point, vary, error, k_error, tolerance):
     status = point.mode.status
-    if status == "resolved" and not error <= max(tolerance, 1e-9) * abs(point.value):
+    if is_resolved(status) and not error <= max(tolerance, 1e-9) * abs(point.value):
         status = f"error {error:.1e} of {vary} exceeds tolerance"
     return NeutralPoint(point.mode.flow, vary, point.k, point.value, point.mode.phase_speed, float(error),
                         float(k_error), status)
@@ -243,7 +244,7 @@ def _long_wave_threshold(plane):
         return None
     value, growth, spread, mode = new
     error = (abs(growth) + spread) / abs(slope)
-    return NeutralPoint(mode.flow, plane.vary, 0.0, value, mode.phase_speed, float(error), 0.0, "resolved")
+    return NeutralPoint(mode.flow, plane.vary, 0.0, value, mode.phase_speed, float(error), 0.0, RESOLVED)
 
 
 def _long_wave_growth(plane, value):

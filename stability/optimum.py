@@ -19,8 +19,10 @@ from .mode import Mode
 from .output import Row
 from .record import Record
 from .solver import DEGREES, TOLERANCE, Assembly, Solver, check_accuracy
+from .status import RESOLVED, STABLE, is_outgrown, is_resolved
 from .threads import one_thread
 from .tracking import follow, surface_mode, survey
+from .wellposed import flag_outgrown, well_posedness
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -98,6 +100,9 @@ class Optimum(Record):
     def columns(self) -> dict[str, np.ndarray]:
         return Optima(self.flow, None, (self,)).columns()
 
+    def notes(self) -> list[str]:
+        return Optima(self.flow, None, (self,)).notes()
+
 
 @dataclass(frozen=True, repr=False)
 class Optima(Record):
@@ -146,6 +151,14 @@ class Optima(Record):
         columns = {**super().columns(), "sigma": sigma}
         return {**columns, "maxima_k": maxima[0], "maxima_growth_rate": maxima[1]} if most else columns
 
+    def notes(self) -> list[str]:
+        faster = [optimum.flow for optimum in self.optima if is_outgrown(optimum.status)]
+        if not faster:
+            return []
+        where = f" at {len(faster)} of {len(self.optima)} values of {self.over}, first here" if self.over else ""
+        strips = "; ".join(map(str, well_posedness(faster[0]).strips))
+        return [naming(faster[0], f"an internal mode outgrows the surface mode at k_max{where}: {strips}")]
+
     def about(self) -> dict[str, Any]:
         return {"over": self.over} if self.over else {}
 
@@ -162,7 +175,7 @@ def k_max(flow: "Flow", search: tuple[float, float] = SEARCH, *, tolerance: floa
     """
     strict = check_flag("strict", strict)
     (optimum,) = k_max_sweep([check_flow(flow)], search, tolerance=tolerance, max_degree=max_degree)
-    if strict and optimum.status != "resolved":
+    if strict and not is_resolved(optimum.status):
         raise NotResolved(naming(flow, optimum.status))
     return optimum
 
@@ -175,6 +188,10 @@ def k_max_sweep(flows: "Iterable[Flow]", search: tuple[float, float] = SEARCH, *
     """
     tolerance, max_degree = check_accuracy(tolerance, max_degree)
     search = check_search(search)
+    yield from flag_outgrown(_optima(flows, search, tolerance, max_degree))
+
+
+def _optima(flows, search, tolerance, max_degree):
     assembly = None
     for flow in flows:
         optimum, assembly = _optimum(flow, search, tolerance, max_degree, assembly)
@@ -205,10 +222,10 @@ def _optimum(flow, search, tolerance, max_degree, assembly):
 
 
 def _status(maxima, status, search):
-    if status != "resolved":
+    if not is_resolved(status):
         return status
     if not maxima:
-        return f"no unstable maximum for k up to {search[1]:g}"
+        return f"{STABLE}: no waves grow for k up to {search[1]:g}"
     return maxima[0].mode.status
 
 
@@ -226,7 +243,7 @@ def _look(solver, low, high):
         return modes, str(reason)
     if _growth_slope(modes[-1]) > 0 and modes[-1].growth_rate > 0:
         return modes, f"growth still rises at k = {modes[-1].k:g}, the end of the search"
-    return modes, "resolved"
+    return modes, RESOLVED
 
 
 def _power_law_start(solver, k):

@@ -16,6 +16,7 @@ from typing import Any
 
 from . import __version__
 from .errors import ParameterError
+from .status import RESOLVED
 
 Row = dict[str, Any]
 _LAYOUTS = ((10, 2), (8, 2), (6, 2), (6, 1), (4, 1))  # digits and spaces between columns of a table, widest first
@@ -82,7 +83,7 @@ def table(rows: list[Row], width: int | None = None) -> str:
 
 def _width(rows, text):
     """Length of the longest line of a table; of a long status the length of a short one."""
-    return max(len(line) - max(len(str(row.get("status", ""))) - len("resolved"), 0)
+    return max(len(line) - max(len(str(row.get("status", ""))) - len(RESOLVED), 0)
                for line, row in zip(text.splitlines(), (rows[0], *rows), strict=True))
 
 

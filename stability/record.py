@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from .output import Row, header_of, render, table, whole_file
+from .status import is_resolved, is_stable
 
 _HEAD, _TAIL = 4, 2  # rows shown of a long table
 Target = str | os.PathLike[str]
@@ -76,9 +77,10 @@ class Record:
 
     def __repr__(self) -> str:
         rows = self._summary()
-        resolved = sum(row["status"].startswith("resolved") for row in rows)
+        resolved, stable = (sum(test(row["status"]) for row in rows) for test in (is_resolved, is_stable))
         about = "".join(f", {name} {value}" for name, value in self.about().items())
         title = f"{type(self).__name__} of {self.flow}{about}: {resolved} of {len(rows)} resolved"
+        title += f", {stable} stable" if stable else ""
         if not rows:
             return title
         if len(rows) <= _HEAD + _TAIL + 1:

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from .checks import check_flag, check_options, check_wavenumbers
-from .errors import INTERRUPTED, ModeLost, StepsExhausted
+from .errors import ModeLost, StepsExhausted, naming
 from .flows.base import check_flow
 from .mode import Mode, require
 from .output import Row
 from .record import Record
 from .solver import DEGREES, TOLERANCE, Solver, check_accuracy
 from .spectra import converged_rates, leading_modes, polished
+from .status import INTERRUPTED, is_resolved, outgrown
 from .threads import one_thread
 from .tracking import Collision, follow, surface_mode
 
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from .flows import Flow
-    from .wellposed import Outgrown
+    from .wellposed import Outgrown, Strip
 
 MODES = ("surface", "leading", "most-unstable")
 
@@ -90,7 +91,7 @@ class DispersionRelation(Record):
     def rows(self) -> list[Row]:
         rows, faster = [self._row(k, mode) for k, mode in self._points()], self._outgrown
         if faster:
-            rows = [{**row, "status": f"{row['status']}; outgrown"} if row["k"] >= faster.k else row for row in rows]
+            rows = [{**row, "status": outgrown(row["status"])} if row["k"] >= faster.k else row for row in rows]
         return rows
 
     def columns(self) -> dict[str, np.ndarray]:
@@ -103,17 +104,26 @@ class DispersionRelation(Record):
 
     def notes(self) -> list[str]:
         notes = sorted({str(collision) for collision in self.collisions} | set(self.lost.values()) - {INTERRUPTED})
-        return [*notes, f"{self.flow}: {self._outgrown}"] if self._outgrown else notes
+        return notes + [naming(self.flow, str(doubt)) for doubt in self._doubts]
 
     def about(self) -> dict[str, Any]:
         return {"mode": self.mode}
 
+    @property
+    def _doubts(self) -> "list[Outgrown] | tuple[Strip, ...]":
+        """What the model says of itself: the mode is outgrown, or the flow is ill posed."""
+        if self.mode == MODES[0] or self.method != "collocation":
+            return [self._outgrown] if self._outgrown else []
+        from .wellposed import well_posedness
+
+        return well_posedness(self.flow).strips
+
     @cached_property
     def _outgrown(self) -> "Outgrown | None":
         """Where an internal mode of an ill-posed flow grows faster."""
-        from .wellposed import outgrown
+        from . import wellposed
 
-        return outgrown(self) if self.method == "collocation" else None
+        return wellposed.outgrown(self) if self.method == "collocation" else None
 
     def _points(self) -> "list[tuple[float, Mode | None]]":
         """Every wavenumber asked for with its mode, None where that was lost."""
@@ -123,7 +133,7 @@ class DispersionRelation(Record):
     def _row(self, k: float, mode: Any) -> Row:
         """Without numbers where the mode is lost, or where the most unstable one is not resolved: that is no result."""
         resolution = "degree" if self.method == "collocation" else "nodes"
-        refused = mode is None or self.mode == "most-unstable" and mode.status != "resolved"
+        refused = mode is None or self.mode == "most-unstable" and not is_resolved(mode.status)
         numbers = {name: None if refused else getattr(mode, name) for name in ("growth_rate", "phase_speed", "error")}
         return {"k": k, **numbers, resolution: getattr(mode, resolution, None),
                 "status": mode.status if mode else INTERRUPTED if self.lost.get(k) == INTERRUPTED else "lost"}

@@ -137,8 +137,9 @@ def short_wave_growth(eta, r, alpha, rho=1.0):
     eta, r, alpha, rho = (np.asarray(value, dtype=float)[..., None] for value in (eta, r, alpha, rho))
     elliptic = np.abs(alpha) < 1
     numerator = (1 - r) * _ANGLES**2 - alpha * _ANGLES + r
-    rate = -eta / rho * numerator / np.where(elliptic, 1 - alpha * _ANGLES, 1)
-    return np.where(elliptic[..., 0], rate.max(axis=-1), inf)
+    with np.errstate(invalid="ignore"):  # an infinite viscosity leaves neutral directions neutral
+        rate = -eta / rho * numerator / np.where(elliptic, 1 - alpha * _ANGLES, 1)
+    return np.where(elliptic[..., 0], np.nanmax(rate, axis=-1) + 0.0, inf)
 
 
 def _root(law, low, high):

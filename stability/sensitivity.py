@@ -17,12 +17,12 @@ from .mode import Mode
 from .output import Row
 from .record import Record
 from .solver import Solver
+from .status import NO_DERIVATIVE, is_resolved
 from .system import System
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-NO_DERIVATIVE = "no derivative"  # the status of a parameter without one begins with it
 
 _STEP = 1e-5
 _STENCILS = {-1: -0.5, 1: 0.5}, {0: -1.5, 1: 2.0, 2: -0.5}, {0: 1.5, -1: -2.0, -2: 0.5}  # offsets: weights
@@ -108,7 +108,7 @@ def _in_parameter(solver: Solver, mode: Mode, refined: Mode, name: str) -> Slope
 
 def _slope(mode: Mode, name: str, value: float, slope: complex, error: float) -> Slope:
     status = mode.status
-    if status == "resolved" and error > _TOLERANCE * max(abs(slope), abs(mode.sigma) / (abs(value) or 1.0)):
+    if is_resolved(status) and error > _TOLERANCE * max(abs(slope), abs(mode.sigma) / (abs(value) or 1.0)):
         status = f"error {error:.1e} exceeds tolerance"
     return Slope(name, value, slope, float(error), status)
 

@@ -9,6 +9,7 @@ from .checks import check_integer, check_tolerance
 from .mode import Mode
 from .pencil import Pencil
 from .refine import refine, refine_many
+from .status import RESOLVED
 from .system import System
 from .table import Table
 
@@ -159,7 +160,7 @@ class Solver:
         rounding = width * _ROUNDING * eigen.rounding + width * eigen.spread + _EPS * abs(sigma)
         truncation = width * eigen.truncation
         error = truncation + rounding
-        status = "resolved"
+        status = RESOLVED
         if not error <= self.tolerance * abs(sigma):  # nor where it is not a number
             status = f"error {error:.1e} exceeds tolerance at degree {degree}"
         slope = width * eigen.slope + (1 + self.flow.order) * sigma / k

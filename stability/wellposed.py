@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from . import status
 from .relation import dispersion
 from .rheology import condition, ill_posed, short_wave_growth
 from .solver import DEGREES as RUNGS
@@ -23,6 +24,7 @@ DEGREES = (16, 24, 32, 48, 64)
 
 _CHECK_DEGREE = 16, 96  # least and largest of the look for a faster mode; between them that of the surface mode
 _FASTER = 1e-6  # relative excess of growth that counts as faster
+_INSIDE = 1e-9  # distance from an edge, in s, at which a limit is taken
 _SETTLED = 1e-4  # relative difference of two degrees that counts as converged
 
 
@@ -111,14 +113,19 @@ def growth_with_degree(flow, k, degrees=DEGREES):
 
 @dataclass(frozen=True)
 class Outgrown:
-    """From wavenumber `k` on another mode grows faster than the surface mode: at `rate` there, None if unresolved."""
+    """From wavenumber `k` on another mode grows faster than the surface mode, by the spectra of two `degrees`.
+
+    It grows at `rate` there, None where the two differ.
+    """
 
     k: float
     rate: float | None
+    degrees: tuple
     strips: tuple
 
     def __str__(self):
-        pace = "that no degree resolves" if self.rate is None else f"({self.rate:.6g})"
+        pace = f"({self.rate:.6g})" if self.rate is not None else \
+            f"that degrees {' and '.join(map(str, self.degrees))} do not resolve"
         return (f"an internal mode {pace} outgrows the surface mode from k = {self.k:.6g} on: "
                 f"{'; '.join(map(str, self.strips))}")
 
@@ -130,7 +137,7 @@ def notes_on(spectra: list[Spectrum]) -> list[str]:
     if not strips:
         return []
     notes = [f"{flow}, k = {one.k:g}: the spectrum does not converge; {'; '.join(map(str, strips))}"
-             for one in spectra if any(mode.status != "resolved" for mode in one.modes)]
+             for one in spectra if not all(status.is_resolved(mode.status) for mode in one.modes)]
     wavenumbers = [one.k for one in spectra]
     faster = outgrown(dispersion(flow, wavenumbers, strict=False)) if flow.has_surface_mode() else None
     return [*notes, f"{flow}: {faster}"] if faster else notes
@@ -157,8 +164,8 @@ def outgrown(relation):
         middle = (below + above) // 2
     if above == len(modes):
         return None
-    coarse, fine = rates[above]
-    return Outgrown(modes[above].k, fine if abs(fine - coarse) < _SETTLED * abs(fine) else None, strips)
+    degrees, (coarse, fine) = zip(*rates[above].items(), strict=True)
+    return Outgrown(modes[above].k, fine if abs(fine - coarse) < _SETTLED * abs(fine) else None, degrees, strips)
 
 
 def flag_outgrown(optima):
@@ -169,7 +176,7 @@ def flag_outgrown(optima):
     known = None
     for optimum in optima:
         faster, known = _outgrown_at(optimum, known)
-        yield replace(optimum, status=f"{optimum.status}; outgrown") if faster else optimum
+        yield replace(optimum, status=status.outgrown(optimum.status)) if faster else optimum
 
 
 @one_thread
@@ -185,16 +192,16 @@ def _outgrown_at(optimum, known):
 
 
 def _faster(solver, mode):
-    """Leading growth rates at two degrees if both exceed that of this mode, else None.
+    """Leading growth rates {degree: rate} at two degrees if both exceed that of this mode, else None.
 
     A degree that does not resolve the mode itself would miss its rivals.
     """
     threshold = mode.growth_rate + _FASTER * abs(mode.sigma) + 10 * mode.error
     rung = RUNGS.index(min(max(mode.degree, _CHECK_DEGREE[0]), _CHECK_DEGREE[1]))
-    rates = []
+    rates = {}
     for degree in (RUNGS[rung], RUNGS[rung + 2]):
-        rates.append(_leading(solver, mode.k, degree))
-        if rates[-1] <= threshold:
+        rates[degree] = _leading(solver, mode.k, degree)
+        if rates[degree] <= threshold:
             return None
     return rates
 
@@ -209,12 +216,12 @@ def _numbers(flow):
 
 
 def _coefficients(layer, s):
-    """beta / eta, alpha, eta and rho at the points s, as arrays; the limit where an edge gives inf or 0/0."""
-    inside = np.clip(s, 1e-9, 1 - 1e-9)
-    base = layer.profile(inside)
-    ratio, alpha, eta, rho = (np.broadcast_to(np.asarray(value, dtype=float), s.shape)
-                              for value in (base.beta / base.eta, base.alpha, base.eta, base.rho))
-    return ratio, alpha, eta, rho
+    """beta / eta, alpha, eta and rho at the points s, as arrays; the limit where an edge gives 0/0."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        at, inside = (np.array([np.broadcast_to(value, s.shape)
+                                for value in (base.beta / base.eta, base.alpha, base.eta, base.rho)], dtype=float)
+                      for base in (layer.profile(s), layer.profile(np.clip(s, _INSIDE, 1 - _INSIDE))))
+    return np.where(np.isnan(at), inside, at)
 
 
 def _strips(layer, s, ill):

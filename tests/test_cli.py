@@ -70,9 +70,9 @@ def test_kmax_lists_all_maxima(capsys):
 
 def test_kmax_of_a_stable_flow_says_so(capsys):
     status, out, err = run(capsys, "kmax", "vortex", "--over", "slope-deg=20:40:2", "--json")
-    assert status == 3
+    assert (status, err) == (0, "")
     assert [row["k_max"] for row in json.loads(out)["rows"]] == [None, None]
-    assert "2 of 2 rows are not resolved" in err
+    assert {row["status"] for row in json.loads(out)["rows"]} == {"stable: no waves grow for k up to 100"}
 
 
 def test_collisions_are_reported(capsys):

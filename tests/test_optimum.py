@@ -56,9 +56,11 @@ def test_small_reynolds_numbers_scale_with_the_root(Re, kappa):
 
 @pytest.mark.parametrize("flow", [flows.Vortex(), flows.Vortex(Fr2=50.0), flows.Dune(shields=1.5, depth=10.0, Re=0.1)])
 def test_flows_that_decay_have_none(flow):
-    with pytest.raises(NotResolved, match="no unstable maximum"):
+    with pytest.raises(NotResolved, match="stable: no waves grow for k up to"):
         k_max(flow)
-    assert k_max(flow, strict=False).maxima == ()
+    found = k_max(flow, strict=False)
+    assert found.maxima == ()
+    assert "0 of 1 resolved, 1 stable" in repr(found)
 
 
 def test_a_search_that_ends_too_early_says_so():
@@ -72,5 +74,5 @@ def test_a_refusal_names_the_flow_once():
     with pytest.raises(NotResolved) as refusal:
         _ = lost.k_max
     assert str(refusal.value) == lost.status
-    with pytest.raises(NotResolved, match="^" + re.escape(f"{flow}: no unstable maximum")):
-        _ = Optimum(flow, (), "no unstable maximum for k up to 1000").k_max
+    with pytest.raises(NotResolved, match="^" + re.escape(f"{flow}: stable: no waves grow")):
+        _ = Optimum(flow, (), "stable: no waves grow for k up to 1000").k_max

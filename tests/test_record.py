@@ -144,8 +144,8 @@ def test_repr_is_a_short_table():
 @pytest.mark.parametrize("name", RECORDS)
 def test_repr_counts_what_is_resolved(record, name):
     text, rows = repr(record(name)), record(name).rows()
-    good = sum(row["status"].startswith("resolved") for row in rows)
-    assert text.splitlines()[0].endswith(f": {good} of {len(rows)} resolved")
+    good, stable = (sum(row["status"].startswith(start) for row in rows) for start in ("resolved", "stable"))
+    assert text.splitlines()[0].endswith(f": {good} of {len(rows)} resolved" + (f", {stable} stable" if stable else ""))
     assert len(text.splitlines()) == 2 + len(rows)
 
 

@@ -5,12 +5,11 @@ import json
 import numpy as np
 import pytest
 
-from stability import NotResolved, dispersion, flows, spectrum
+from stability import NotResolved, dispersion, flows, k_max, spectrum
 from stability.cli import main
-from stability.optimum import k_max_sweep
 from stability.relation import DispersionRelation
 from stability.rheology import Linear, well_posed_band
-from stability.wellposed import flag_outgrown, growth_with_degree, outgrown, well_posedness
+from stability.wellposed import growth_with_degree, outgrown, well_posedness
 
 ILL = flows.Dune(shields=1.05, mu1=0.7, b=1.0, Re=10.0)
 INTERNAL = 7327.0151706242 + 24715.4910767460j  # power series in 30-digit arithmetic
@@ -91,6 +90,28 @@ def test_no_surface_mode_no_flag():
     assert outgrown(DispersionRelation(ILL, "most-unstable", (), {}, ())) is None
 
 
+@pytest.mark.parametrize("mode", ["leading", "most-unstable"])
+def test_other_modes_of_an_ill_posed_flow_carry_a_note(mode):
+    """That of roll waves at k = 10 is resolved at degree 512 only: it still moves at the degrees that are compared."""
+    flow = flows.RollWave(slope_deg=32.6)
+    relation = dispersion(flow, 10.0, mode)
+    assert relation.status == ("resolved",)
+    assert relation.notes() == [f"{flow}: grains is ill posed between heights 0 and 1 above its lower edge"]
+    assert dispersion(flows.RollWave(slope_deg=28.0), 10.0, mode, strict=False).notes() == []
+    surface = dispersion(flow, 10.0, strict=False)
+    assert "that degrees 96 and 160 do not resolve outgrows" in surface.notes()[0]
+
+
+def test_limits_at_the_edges_of_a_layer():
+    """At the yield surface the viscosity is infinite and r = 0: C = alpha^2 = mu1^2, short waves grow without bound."""
+    found = well_posedness(flows.Dune(mu1=0.4), 3)
+    assert found.C[0] == pytest.approx(0.16, abs=1e-15)
+    assert found.short_waves[0] == np.inf
+    assert np.all(np.isfinite(found.short_waves[1:]))
+    surface = well_posedness(flows.RollWave(slope_deg=32.6), 3).short_waves[-1]
+    assert (surface, np.signbit(surface)) == (0, False)
+
+
 def test_unresolved_mode_is_refused():
     with pytest.raises(NotResolved, match="exceeds tolerance"):
         dispersion(flows.RollWave(slope_deg=21.1), 30.0, mode="most-unstable", max_degree=48)
@@ -145,12 +166,13 @@ def test_command_reports_growth_by_degree(capsys):
 ])
 def test_an_internal_mode_ahead_at_k_max_is_noticed(shields, mu1, Re, overtaken):
     flow = flows.Dune(shields=shields, mu1=mu1, Re=Re)
-    (optimum,) = flag_outgrown(k_max_sweep([flow]))
+    optimum = k_max(flow)
     leading = spectrum(flow, optimum.k_max, 1).modes[0]
     assert optimum.status.endswith("outgrown") == overtaken == (leading.growth_rate > optimum.growth_rate + 1e-6)
 
 
 def test_kmax_says_which_points_are_outgrown(capsys):
-    status, out, _ = run(capsys, "kmax", "dune", "--shields", "1.02", "--mu1", "0.7", "--over", "Re=10,3e3", "--json")
+    status, out, err = run(capsys, "kmax", "dune", "--shields", "1.02", "--mu1", "0.7", "--over", "Re=10,3e3", "--json")
     assert status == 0
+    assert "an internal mode outgrows the surface mode at k_max at 1 of 2 values of Re, first here: bed is ill" in err
     assert [row["status"] for row in json.loads(out)["rows"]] == ["resolved", "resolved; outgrown"]

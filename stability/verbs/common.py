@@ -6,19 +6,18 @@ from dataclasses import fields, replace
 from difflib import get_close_matches
 from pathlib import Path
 
-from ..errors import INTERRUPTED, ParameterError
+from ..errors import ParameterError
 from ..flows import FLOWS
 from ..flows.base import allowed
 from ..output import check_writable, header_of, render, terminal_width, whole_file, write
 from ..solver import DEGREES, TOLERANCE, check_accuracy
 from ..specs import parse_spec
+from ..status import INTERRUPTED, is_settled
 from .progress import Bar
 
 SPEC = "a number, a list a,b,c, or a range a:b:n (log-spaced) or a:b:n:lin"
 MORE = ", and sweep several parameters with: stability map"  # where --over sweeps one
-RESOLVED = "resolved"  # the status of a good row begins with it
 INTERRUPTED_STATUS = 130  # of the command
-_DONE = (RESOLVED, "no derivative")  # or with this, where there is none to compute
 _FORMS = {".csv": "csv", ".json": "json"}  # that the ending of a file stands for
 _PLOTS = (".png", ".pdf", ".svg")
 
@@ -146,7 +145,7 @@ def report(arguments, flow, compute, swept=()):
     check_files(arguments)
     rows, result, notes = compute()
     missing = [row for row in rows if row["status"] == INTERRUPTED]
-    failed = [row for row in rows if not row["status"].startswith((*_DONE, INTERRUPTED))]
+    failed = [row for row in rows if not is_settled(row["status"]) and row["status"] != INTERRUPTED]
     if not arguments.quiet:
         for note in notes:
             print(f"stability: {note}", file=sys.stderr)

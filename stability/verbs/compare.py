@@ -2,7 +2,8 @@
 
 from ..errors import ParameterError
 from ..specs import parse_spec
-from .common import RESOLVED, Once, add_verb, flow_of, report
+from ..status import RESOLVED
+from .common import Once, add_verb, flow_of, report
 from .progress import Bar
 
 

@@ -2,9 +2,10 @@
 
 from dataclasses import replace
 
-from ..errors import INTERRUPTED, ParameterError
+from ..errors import ParameterError
 from ..relation import MODES, DispersionRelation, default_mode, dispersion_parts, joined
 from ..specs import parse_spec
+from ..status import INTERRUPTED
 from .common import add_verb, collect, flow_of, k_option, options_of, report
 from .methods import method_of, method_options
 

@@ -1,8 +1,8 @@
 """stability kmax: the fastest growing wavenumber, over a parameter."""
 
-from ..errors import INTERRUPTED, StabilityError
+from ..errors import StabilityError
 from ..optimum import Optima, Optimum, k_max_sweep
-from ..wellposed import flag_outgrown
+from ..status import INTERRUPTED
 from .common import MORE, SPEC, Once, add_verb, collect, flow_of, options_of, report, sweep_of
 from .methods import method_of, method_options
 
@@ -23,11 +23,11 @@ def _run(arguments):
     bvps = [method_of(arguments, one, options["tolerance"]) for one in sweep]
 
     def compute():
-        optima = flag_outgrown(k_max_sweep(sweep, **options)) if bvps[0] is None else map(_bounded, sweep, bvps)
+        optima = k_max_sweep(sweep, **options) if bvps[0] is None else map(_bounded, sweep, bvps)
         found = collect(arguments, optima, len(sweep),
                         lambda done: [Optimum(one, (), INTERRUPTED) for one in sweep[done:]])
         whole = Optima(flow, name, tuple(found), arguments.method)
-        return whole.rows(), whole, []
+        return whole.rows(), whole, whole.notes()
 
     return report(arguments, flow, compute)
 

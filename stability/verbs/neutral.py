@@ -1,7 +1,8 @@
 """stability neutral: where growth vanishes, over a second parameter or over wavenumbers."""
 
-from ..errors import INTERRUPTED, ParameterError
+from ..errors import ParameterError
 from ..specs import parse_spec
+from ..status import INTERRUPTED
 from .common import MORE, SPEC, Once, add_verb, collect, flow_of, options_of, report, sweep_of
 from .critical import long_wave_option, vary_option
 

@@ -1,9 +1,9 @@
 """stability spectrum: the least stable modes at one wavenumber."""
 
 from ..checks import check_integer
-from ..errors import INTERRUPTED
 from ..specs import parse_spec
 from ..spectra import MOST, spectrum
+from ..status import INTERRUPTED
 from ..wellposed import notes_on
 from .common import add_verb, collect, flow_of, k_option, options_of, report
 

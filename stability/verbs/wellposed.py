@@ -1,10 +1,10 @@
 """stability wellposed: where a flow's own equations are ill posed, and how its fastest modes grow with k."""
 
 from ..checks import check_integer
-from ..errors import INTERRUPTED
 from ..specs import parse_spec
+from ..status import INTERRUPTED, RESOLVED
 from ..wellposed import growth_with_degree, well_posedness
-from .common import RESOLVED, Once, add_verb, collect, flow_of, report
+from .common import Once, add_verb, collect, flow_of, report
 
 _POINTS = "21"
 _WAVENUMBERS = "1:100:9"  # of the second panel of the figure
