@@ -8,7 +8,7 @@ from .errors import ParameterError
 from .plots import BLUE, DISPERSION, GREY, NEUTRAL, OPTIMA, RED
 from .status import is_outgrown, is_settled, is_stable
 
-HATCHES = {"not resolved": "////", "stable": "....", "outgrown by an internal mode": "xxxx"}
+HATCHES = {"not resolved": "////", "stable": "..", "outgrown by an internal mode": "xxxx"}
 _SIGNED, _RISING = "RdBu_r", "viridis"
 _DECADES = 20.0  # ratio of values beyond which their logarithm is shown
 _FEW, _MANY = (2, 5), (1.5, 2, 3, 5, 7)  # ticks between powers of ten
@@ -58,7 +58,7 @@ def _legend(figure, found, doubtful):
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    handles: list[Any] = [Patch(facecolor="none", edgecolor=GREY, hatch=HATCHES[name], label=name)
+    handles: list[Any] = [Patch(facecolor="none", edgecolor="k", hatch=HATCHES[name], label=name)
                for name, where in doubtful.items() if where.any()]
     if found.quantity == "k_max" and len(found.axes) == 2 and any(part.any() for part in branch_changes(found)):
         handles.append(Line2D([], [], color=RED, label="jump between branches"))
