@@ -6,26 +6,67 @@ finite is never called resolved: no warning has to say so.
 
 from collections.abc import Callable
 from functools import lru_cache, wraps
+from threading import Lock
 from typing import ParamSpec, TypeVar
 
 import numpy as np
-from threadpoolctl import ThreadpoolController
+import threadpoolctl
 
 _Arguments = ParamSpec("_Arguments")
 _Result = TypeVar("_Result")
 
 
 def one_thread(function: Callable[_Arguments, _Result]) -> Callable[_Arguments, _Result]:
-    """Run `function` with one BLAS thread and without floating-point warnings; the caller's settings are restored."""
+    """Run `function` with one BLAS thread and without floating-point warnings; the caller's settings are restored.
+
+    The number of BLAS threads belongs to the whole process: it is restored once no thread is in such a function.
+    """
 
     @wraps(function)
     def limited(*arguments: _Arguments.args, **options: _Arguments.kwargs) -> _Result:
-        with _controller().limit(limits=1, user_api="blas"), np.errstate(all="ignore"):
+        with _ONE, np.errstate(all="ignore"):
             return function(*arguments, **options)
 
     return limited
 
 
+class _Shared:
+    """One BLAS thread, set by the first that enters and lifted by the last that leaves, in whatever threads."""
+
+    def __init__(self):
+        self._lock, self._inside, self._limit = Lock(), 0, None
+
+    def __enter__(self):
+        with self._lock:
+            if not self._inside:
+                self._limit = _unclaimed(lambda: _controller().limit(limits=1, user_api="blas"))
+            self._inside += 1
+
+    def __exit__(self, *failure):
+        with self._lock:
+            self._inside -= 1
+            if not self._inside:
+                _unclaimed(self._limit.restore_original_limits)
+
+
+_ONE = _Shared()
+
+
+def _unclaimed(change):
+    """Make a change to the number of threads that any other thread may undo.
+
+    Since version 3.8 of threadpoolctl the first thread that sets the number claims it; others do nothing, silently.
+    """
+    release = getattr(getattr(threadpoolctl, "OpenBLASController", None), "clear_controlling_thread", None)
+    if release is None:
+        return change()
+    release(force=True)
+    try:
+        return change()
+    finally:
+        release(force=True)
+
+
 @lru_cache(maxsize=1)
 def _controller():
-    return ThreadpoolController()
+    return threadpoolctl.ThreadpoolController()
