@@ -36,9 +36,14 @@ def shown(value, number=None):
     return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
 
 
+def flat(values):
+    """One value or any nest of sequences and arrays as a flat list."""
+    return (values if isinstance(values, np.ndarray) else np.asarray(values, dtype=object)).ravel().tolist()
+
+
 def check_wavenumbers(k, name="k"):
     """Return k, a number or a sequence, as a flat float array (points,), or raise a ParameterError."""
-    values = (k if isinstance(k, np.ndarray) else np.asarray(k, dtype=object)).ravel().tolist()
+    values = flat(k)
     if not values:
         raise ParameterError(f"{name}: give at least one wavenumber")
     numbers = [as_number(value) for value in values]

@@ -16,17 +16,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import status
-from .checks import check_wavenumbers
+from .checks import check_integer, check_options, check_wavenumbers, flat, shown
 from .errors import ParameterError, StabilityError, WorkersLost
-from .flows.base import check_parameter
+from .flows.base import check_flow, check_parameter
 from .journal import Journal
 from .neutral import check_parameter_name, critical_sweep
 from .optimum import k_max_sweep
 from .output import Row, header_of
-from .pool import processes
+from .pool import MOST_WORKERS, processes
 from .record import Record
 from .relation import dispersion
-from .solver import DEGREES, TOLERANCE
+from .solver import DEGREES, TOLERANCE, check_accuracy
 from .wellposed import outgrown
 
 if TYPE_CHECKING:
@@ -63,21 +63,29 @@ class Request:
     max_degree: int = DEGREES[-1]
 
     def __post_init__(self):
-        if self.quantity not in QUANTITIES:
-            raise ParameterError(f"quantity must be one of {', '.join(QUANTITIES)} (got {self.quantity!r})")
+        check_flow(self.flow)
+        self._set(quantity=check_options("quantity", self.quantity, QUANTITIES))
+        tolerance, max_degree = check_accuracy(self.tolerance, self.max_degree)
+        self._set(tolerance=tolerance, max_degree=max_degree)
+        if not isinstance(self.over, Mapping):
+            raise ParameterError(f"over must be a dict {{parameter: values}} (got {shown(self.over)})")
         if not 1 <= len(self.over) <= _MOST_AXES:
             raise ParameterError(f"over: a map has one to {_MOST_AXES} swept parameters (got {len(self.over)})")
-        object.__setattr__(self, "over", {name: self._values(name, values) for name, values in self.over.items()})
+        self._set(over={name: self._values(name, values) for name, values in self.over.items()})
         self._check_quantity()
         if self.k is not None:
-            object.__setattr__(self, "k", tuple(check_wavenumbers(self.k).tolist()))
+            self._set(k=tuple(check_wavenumbers(self.k).tolist()))
         if not 1 <= self.size <= _MOST_POINTS:
             raise ParameterError(f"over: a map has 1 to {_MOST_POINTS} points (got {self.size}): coarsen or split it")
+
+    def _set(self, **values):
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
 
     def _values(self, name, values):
         check_parameter_name(self.flow, name)
         (item,) = (item for item in fields(self.flow) if item.name == name)
-        return tuple(check_parameter(self.flow.name, item, value) for value in np.ravel(values).tolist())
+        return tuple(check_parameter(self.flow.name, item, value) for value in flat(values))
 
     def _check_quantity(self):
         for name, owner, meaning in (("k", "growth_rate", "wavenumbers"),
@@ -139,7 +147,7 @@ class Request:
         fixed = {item.name: getattr(self.flow, item.name) for item in fields(self.flow) if item.name not in self.over}
         return {"version": __version__, "flow": self.flow.name, "parameters": fixed,
                 "over": [[name, list(values)] for name, values in self.over.items()], "quantity": self.quantity,
-                "k": self.k and list(self.k), "vary": self.vary, "tolerance": float(self.tolerance),
+                "k": self.k and list(self.k), "vary": self.vary, "tolerance": self.tolerance,
                 "max_degree": self.max_degree}
 
 
@@ -270,15 +278,17 @@ def parameter_map(flow: "Flow", over: "Mapping[str, ArrayLike]", quantity: str |
     >>> f"{found['k_max'][1, 0]:.7f}"
     '0.8492020'
     """
-    quantity = quantity or ("k_max" if k is None else "growth_rate")
+    if quantity is None:
+        quantity = "k_max" if k is None else "growth_rate"
     return carry_out(Request(flow, over, quantity, k, vary, tolerance, max_degree), executor=executor, workers=workers,
                      journal=journal, report=report)
 
 
 def carry_out(request, *, executor=None, workers=1, journal=None, report=None):
     """Return the `Map` of a request; see `parameter_map`."""
+    workers = _check_means(executor, workers, journal)
     pieces, report = request.pieces(), report or (lambda done, total: None)
-    with Journal(journal, request.description()) if journal else nullcontext() as kept:
+    with Journal(journal, request.description()) if journal is not None else nullcontext() as kept:
         done = dict(kept.done) if kept else {}
         left = [piece for piece in pieces if piece.index not in done]
         count = request.size - sum(piece.points for piece in left)
@@ -291,6 +301,15 @@ def carry_out(request, *, executor=None, workers=1, journal=None, report=None):
                 count += piece.points
                 report(count, request.size)
     return Map(request, tuple(tuple(row) for piece in pieces for row in done[piece.index]))
+
+
+def _check_means(executor, workers, journal):
+    """Return the number of workers, or raise a ParameterError where a map cannot be computed with this."""
+    if executor is not None and not callable(getattr(executor, "submit", None)):
+        raise ParameterError(f"executor must be a concurrent.futures.Executor (got {shown(executor)})")
+    if not isinstance(journal, str | PathLike | None):
+        raise ParameterError(f"journal must be the name of a file (got {shown(journal)})")
+    return check_integer(workers, "workers", 1, MOST_WORKERS)
 
 
 def _compute_all(pieces, executor, workers):

@@ -9,6 +9,8 @@ from multiprocessing import get_context
 
 from threadpoolctl import threadpool_limits
 
+MOST_WORKERS = 1000
+
 
 def cores():
     """How many cores this process may use."""

@@ -34,7 +34,7 @@ class _Shared:
     """One BLAS thread, set by the first that enters and lifted by the last that leaves, in whatever threads."""
 
     def __init__(self):
-        self._lock, self._inside, self._limit = Lock(), 0, None
+        self._lock, self._inside = Lock(), 0
 
     def __enter__(self):
         with self._lock:

@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import re
 import resource
 import signal
 import subprocess
@@ -407,6 +408,53 @@ def test_bad_files_get_one_clear_line(tmp_path, monkeypatch, capsys, words, line
     status, out, err = run(capsys, "map", "dune", "--over", "Re=1,2", *words)
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert line in err
+
+
+BED, RE = flows.Dune(), {"Re": [1.0, 2.0]}
+
+
+@pytest.mark.parametrize(("arguments", "line"), [
+    ({"tolerance": 5}, r"tolerance: must lie in \[1e-15, 0.1\] \(got 5\)"),
+    ({"tolerance": "x"}, r"tolerance: must lie in \[1e-15, 0.1\] \(got 'x'\)"),
+    ({"max_degree": 3}, r"max_degree: must be an integer from 8 to 512 \(got 3\)"),
+    ({"max_degree": 64.5}, r"max_degree: must be an integer from 8 to 512 \(got 64.5\)"),
+    ({"flow": flows.Dune}, r"flow must be an object of a class in stability.flows; did you mean Dune\(\)\?"),
+    ({"flow": None}, "flow must be an object of a class in stability.flows"),
+    ({"over": "Re"}, r"over must be a dict \{parameter: values\} \(got 'Re'\)"),
+    ({"over": [("Re", [1.0, 2.0])]}, r"over must be a dict \{parameter: values\} \(got \[\('Re', \["),
+    ({"over": None}, r"over must be a dict \{parameter: values\} \(got None\)"),
+    ({"over": {"Re": [1.0, [2.0, 3.0]]}}, r"Re must be a number in \(0, inf\) \(got \[2.0, 3.0\]\)"),
+    ({"over": {"Re": "fast"}}, r"Re must be a number in \(0, inf\) \(got 'fast'\)"),
+    ({"over": {0: [1.0]}}, "dune has no numeric parameter 0 to vary"),
+    ({"quantity": ["k_max"]}, "quantity must be one of k_max, growth_rate, neutral"),
+    ({"quantity": ""}, "quantity must be one of k_max, growth_rate, neutral"),
+    ({"quantity": "neutral", "vary": ["b"]}, r"dune has no numeric parameter \['b'\] to vary"),
+    ({"workers": 0}, r"workers: must be an integer from 1 to 1000 \(got 0\)"),
+    ({"workers": -1}, r"workers: must be an integer from 1 to 1000 \(got -1\)"),
+    ({"workers": None}, r"workers: must be an integer from 1 to 1000 \(got None\)"),
+    ({"workers": "two"}, r"workers: must be an integer from 1 to 1000 \(got 'two'\)"),
+    ({"executor": 2}, r"executor must be a concurrent.futures.Executor \(got 2\)"),
+])
+def test_bad_arguments_are_refused_before_any_file_is_touched(tmp_path, arguments, line):
+    given = {"flow": BED, "over": RE, "journal": tmp_path / "kept", **arguments}
+    with pytest.raises(ParameterError, match=f"^{line}|^dune: {line}|^{re.escape(str(BED))}: {line}") as refusal:
+        parameter_map(**given)
+    assert "\n" not in str(refusal.value)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("journal", [5, b"kept"])
+def test_a_journal_is_the_name_of_a_file(journal):
+    with pytest.raises(ParameterError, match=r"^journal must be the name of a file \(got "):
+        parameter_map(BED, RE, journal=journal)
+
+
+def test_numbers_of_any_kind_are_kept_in_a_journal(tmp_path):
+    given = {"tolerance": np.float32(1e-8), "max_degree": np.int64(64), "workers": "1", "quantity": np.str_("k_max")}
+    over = {"Re": np.array([1, 2])}
+    found = parameter_map(BED, over, journal=tmp_path / "kept", **given)
+    assert found["k_max"] == pytest.approx([k_max(flows.Dune(Re=Re)).k_max for Re in (1.0, 2.0)], rel=1e-7)
+    assert parameter_map(BED, over, journal=tmp_path / "kept", **given).table == found.table
 
 
 def test_a_flow_without_a_surface_mode_has_no_map_of_k_max(tmp_path, capsys):

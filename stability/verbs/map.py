@@ -11,7 +11,6 @@ from .critical import vary_option
 from .progress import Bar
 
 _FORMS = {".csv": "csv", ".json": "json", ".nc": "netcdf"}
-_MOST_WORKERS = 1000
 _DRAWN_AXES = 2
 
 
@@ -32,10 +31,10 @@ def _options(verb):
 
 def _run(arguments):
     from ..maps import carry_out
-    from ..pool import cores
+    from ..pool import MOST_WORKERS, cores
 
     request = _request(arguments)
-    workers = cores() if arguments.workers is None else check_integer(arguments.workers, "--workers", 1, _MOST_WORKERS)
+    workers = cores() if arguments.workers is None else check_integer(arguments.workers, "--workers", 1, MOST_WORKERS)
     arguments.form = _form(arguments)
     _check_files(arguments, request)
     journal = Path(f"{arguments.output}.partial")
