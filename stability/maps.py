@@ -23,7 +23,7 @@ from .journal import Journal
 from .neutral import check_parameter_name, critical_sweep
 from .optimum import k_max_sweep
 from .output import Row, header_of
-from .pool import MOST_WORKERS, processes
+from .pool import GUARD, MOST_WORKERS, processes
 from .record import Record
 from .relation import dispersion
 from .solver import DEGREES, TOLERANCE, check_accuracy
@@ -268,10 +268,10 @@ def parameter_map(flow: "Flow", over: "Mapping[str, ArrayLike]", quantity: str |
     (the default with wavenumbers `k`, the innermost axis then) that of the mode that `dispersion` follows, "neutral"
     the critical value of `vary`, sought from the value that the flow has. What fails says so in its status.
 
-    Work is done in this process, in `workers` processes of our own (a script then needs `if __name__ ==
-    "__main__"`), or on any `concurrent.futures.Executor`, where pieces that fail are submitted again. `journal` names
-    a file that keeps finished pieces: the same call resumes from it; delete it once the map is stored.
-    `report(done, total)` is called as points are done.
+    Work is done in this process, in `workers` processes of our own (a script then needs `if __name__ == "__main__":`
+    around what it does, and cannot come from standard input), or on any `concurrent.futures.Executor`, where pieces
+    that fail are submitted again. `journal` names a file that keeps finished pieces: the same call resumes from it;
+    delete it once the map is stored. `report(done, total)` is called as points are done.
 
     >>> from stability import flows
     >>> found = parameter_map(flows.Dune(), {"shields": [1.5, 2.0], "Re": [10.0, 100.0]})
@@ -375,8 +375,8 @@ def _round(executor, pieces, attempt):
 
 def _given_up(failure):
     if isinstance(failure, BrokenExecutor):
-        return WorkersLost(f"worker processes ended {_ROUNDS} times before they finished anything: out of memory? "
-                           "Try fewer workers")
+        return WorkersLost(f"worker processes ended {_ROUNDS} times before they finished anything: {GUARD}; or memory "
+                           "is short: try fewer workers")
     return failure
 
 

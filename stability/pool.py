@@ -2,14 +2,18 @@
 
 import os
 import signal
+import sys
 import threading
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import contextmanager
+from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
+from contextlib import contextmanager, suppress
 from multiprocessing import get_context
 
 from threadpoolctl import threadpool_limits
 
+from .errors import ParameterError, WorkersLost
+
 MOST_WORKERS = 1000
+GUARD = 'a script needs `if __name__ == "__main__":` around what it does, and cannot come from standard input'
 
 
 def cores():
@@ -22,20 +26,24 @@ def processes(workers):
     """Yield a pool of `workers` fresh processes; whatever they still do at the end of the block is dropped.
 
     Each holds one end of a pipe whose other end is ours alone. When that closes, because the block ends or because
-    this process was killed, they end at once.
+    this process was killed, they end at once. Raises WorkersLost at the end of a block in which none of them began.
     """
+    if getattr(sys.modules["__main__"], "__file__", None) == "<stdin>":
+        raise ParameterError(f"workers: each process runs the script anew: {GUARD}")
     context = get_context("spawn")  # a fork would copy the other end of the pipe, and the threads of BLAS
     theirs, ours = context.Pipe(duplex=False)
-    pool = ProcessPoolExecutor(workers, context, _begin, (theirs,))
+    pool, first = ProcessPoolExecutor(workers, context, _begin, (theirs,)), []
     try:
-        with _deaf():
+        with _deaf(), suppress(BrokenExecutor):
             for _ in range(workers):
-                pool.submit(_nothing)  # starts a process
+                first.append(pool.submit(_nothing))  # starts a process
         yield pool
     finally:
         ours.close()
         pool.shutdown()
         theirs.close()
+    if all(task.exception() for task in first):
+        raise WorkersLost(f"no worker process began: {GUARD}")
 
 
 @contextmanager

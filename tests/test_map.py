@@ -169,8 +169,32 @@ def _dying_pool():
 
 def test_workers_that_keep_dying_are_given_up(monkeypatch):
     monkeypatch.setattr(maps, "processes", lambda workers: _dying_pool())
-    with pytest.raises(WorkersLost, match="ended 3 times"):
+    with pytest.raises(WorkersLost, match="ended 3 times before they finished anything: a script needs"):
         parameter_map(flows.Dune(), SMALL, workers=2)
+
+
+SCRIPT = """
+from stability import flows
+from stability.maps import parameter_map
+
+parameter_map(flows.Dune(), {"Re": [float(Re) for Re in range(1, 9)]}, workers=2)
+"""
+GUARD = 'a script needs `if __name__ == "__main__":` around what it does, and cannot come from standard input'
+
+
+def test_a_script_without_a_guard_is_told_so_after_one_round(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(SCRIPT)
+    err = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, timeout=60, cwd=tmp_path).stderr
+    assert err.endswith(f"stability.errors.WorkersLost: no worker process began: {GUARD}\n")
+    assert err.count("RuntimeError: ") <= 2  # a traceback of each worker, once
+
+
+def test_a_script_from_standard_input_is_refused_before_workers_start():
+    done = subprocess.run([sys.executable, "-"], input=SCRIPT, capture_output=True, text=True, timeout=60)
+    line = f"stability.errors.ParameterError: workers: each process runs the script anew: {GUARD}\n"
+    assert done.stderr.endswith(line)
+    assert done.stderr.count("Traceback") == 1
 
 
 def test_a_broken_executor_of_somebody_else_is_reported():
