@@ -4,7 +4,7 @@ This is how Cawthorn's thesis computes (4.1.4, 4.2.4); `stability.thesis` has it
 here to be compared with: `stability.dispersion` is faster and more accurate, and its error bar is sharper.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import exp, log
 from typing import Any
 
@@ -69,7 +69,7 @@ class Continuation:
     """Points along k or along a parameter; `lost` maps each value that was not reached to the reason."""
 
     points: tuple
-    lost: dict
+    lost: dict = field(hash=False)
 
     @property
     def k(self):

@@ -24,7 +24,7 @@ _AT_REST = 1e-10  # amplitude / max |u| below which a surface does not take part
 _ODD_WITH_W = np.array([-1, 1, 1, -1, -1])  # parity of u, w, t, n, p relative to that of w
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Fields:
     """A mode at heights z: perturbations of velocity u (along the wave), w (normal to the flow), shear stress t,
     normal stress n and pressure p, complex arrays of the shape of z, and the amplitudes of the `surfaces`.

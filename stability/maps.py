@@ -55,7 +55,7 @@ class Request:
     "neutral". Raises ParameterError where that makes no map."""
 
     flow: Any
-    over: Any
+    over: Any = field(hash=False)
     quantity: str
     k: Any = None
     vary: str | None = None

@@ -37,8 +37,8 @@ class Mode:
     rounding: float
     rate: complex = field(repr=False)
     rate_slope: complex = field(repr=False)
-    x: np.ndarray = field(repr=False)
-    y: np.ndarray = field(repr=False)
+    x: np.ndarray = field(repr=False, compare=False)
+    y: np.ndarray = field(repr=False, compare=False)
 
     @property
     def growth_rate(self) -> float:

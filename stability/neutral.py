@@ -9,7 +9,7 @@ growth = 0 through the plane of k and the parameter by arclength, past its turni
 
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from math import exp, log
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -79,7 +79,7 @@ class NeutralCurve(Record):
     flow: Any
     vary: str
     points: tuple[NeutralPoint, ...]
-    trace: np.ndarray
+    trace: np.ndarray = field(compare=False)
     dimension: ClassVar[str] = "point"
 
     @property

@@ -1,7 +1,7 @@
 """Dispersion relations sigma(k): the surface mode followed from its long-wave limit, or the most unstable mode."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -45,7 +45,7 @@ class DispersionRelation(Record):
     flow: Any
     mode: str
     modes: tuple[Mode, ...]
-    lost: dict[float, str]
+    lost: dict[float, str] = field(hash=False)
     collisions: tuple[Collision, ...]
     asked: tuple[float, ...] = ()
     method: str = "collocation"

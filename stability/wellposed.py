@@ -40,7 +40,7 @@ class Strip:
         return f"{self.layer} is ill posed between heights {self.low:.4g} and {self.high:.4g} above its lower edge"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class WellPosedness:
     """C and the growth of short waves through the sheared layers of a flow.
 
@@ -62,7 +62,7 @@ class WellPosedness:
         return bool(self.strips)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Growth:
     """Largest growth rate of all modes at wavenumber k, by degree (degrees,), and that of the surface mode, or None."""
 

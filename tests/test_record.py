@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from copy import deepcopy
 from dataclasses import replace
 from functools import cache
 
@@ -13,9 +14,12 @@ from scipy.io import netcdf_file
 
 from stability import ParameterError, __version__, dispersion, flows, k_max, spectrum
 from stability.cli import main
+from stability.continuation import Continuation
+from stability.maps import parameter_map
 from stability.neutral import neutral_curve
 from stability.optimum import Optima, k_max_sweep
 from stability.sensitivity import sensitivities
+from stability.wellposed import growth_with_degree, well_posedness
 
 BED = flows.Dune()
 LOST = {"mode": "most-unstable", "max_degree": 14, "strict": False}
@@ -51,10 +55,17 @@ COMMANDS = {
 }
 
 
+OTHERS = {
+    "mode": lambda: dispersion(BED, 1.0).modes[0],
+    "map": lambda: parameter_map(BED, {"Re": [1.0, 10.0]}),
+    "continuation": lambda: Continuation((), {1.0: "why"}),
+}
+
+
 @pytest.fixture(scope="module")
 def record():
     """The records by name, each made once."""
-    return cache(lambda name: RECORDS[name]())
+    return cache(lambda name: {**RECORDS, **OTHERS}[name]())
 
 
 @pytest.mark.parametrize("name", RECORDS)
@@ -198,6 +209,29 @@ def test_results_do_without_heavy_packages():
             f"m.modes[0].fields(0.5); m.modes[0].sensitivity(); "
             f"print([name for name in {heavy} if name in sys.modules])")
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"
+
+
+@pytest.mark.parametrize("name", [*RECORDS, *OTHERS])
+def test_records_of_the_same_numbers_are_equal(record, name):
+    one = record(name)
+    again = deepcopy(one)
+    assert one == again
+    assert {one: 1}[again] == 1
+
+
+@pytest.mark.parametrize(("name", "change"), [("mode", {"error": 1.0}), ("dispersion", {"lost": {1.0: "why"}}),
+                                              ("neutral", {"points": ()}), ("spectrum", {"k": 3.0}),
+                                              ("continuation", {"lost": {}}), ("map", {"table": ()})])
+def test_records_of_other_numbers_are_not(record, name, change):
+    assert record(name) != replace(record(name), **change)
+
+
+def test_records_of_arrays_alone_are_equal_to_themselves():
+    fields = dispersion(BED, 1.0).modes[0].fields([-0.5, 0.0])
+    for one in (fields, well_posedness(BED), growth_with_degree(BED, [1.0])[0]):
+        assert one == one  # noqa: PLR0124
+        assert one != deepcopy(one)
+        assert {one: 1}[one] == 1
 
 
 def test_rows_are_json(record):
