@@ -12,6 +12,7 @@ import numpy as np
 from numpy.polynomial import chebyshev as C
 
 from . import chebyshev
+from .checks import as_number, shown
 from .errors import ParameterError
 from .layer import FIELDS
 from .mode import Mode
@@ -31,7 +32,9 @@ class Fields:
 
     The amplitude of the first surface is 1; where there is none or it stays at rest, u = 1 where |u| is largest. An
     interface between two layers counts to the lower one. Lengths, velocities and stresses are in the scales
-    of the flow; in a steady layer (the fluid over a dune) in its own, those of its profile.
+    of the flow; in a steady layer (the fluid over a dune) in its own, those of its profile. Stresses are positive as
+    tension is: n = -p + 2 eta dw/dz with the effective viscosity eta. t acts along the wave on a face of normal z
+    and is positive as the shear stress of a base flow with U' > 0.
     """
 
     z: np.ndarray
@@ -82,12 +85,12 @@ class Eigenfunction:
 
     def at(self, z: Any) -> Fields:
         """Return the `Fields` at heights z, a number or an array; raises ParameterError outside the layers."""
-        heights = np.asarray(z, dtype=float)
+        heights = _heights(z)
         flat = heights.ravel()
         outside = flat[~((flat >= self.low - self._slack) & (flat <= self.high + self._slack))]
         if len(outside):
-            raise ParameterError(f"z must lie in the layers of the flow, [{self.low:g}, {self.high:g}] "
-                                 f"(got {outside[0]:g})")
+            low, high = (round(edge / self._slack) * self._slack for edge in (self.low, self.high))
+            raise ParameterError(f"z must lie in the layers of the flow, [{low:g}, {high:g}] (got {outside[0]:g})")
         mirrored = flat < self.edges[0] - self._slack
         inside = np.where(mirrored, 2 * self.edges[0] - flat, flat)
         values = np.zeros((5, len(flat)), complex)
@@ -124,6 +127,16 @@ class Eigenfunction:
         stresses = base.stress * np.array((along * t, n, -n - 2j * self.k * viscous))
         velocities = _values(base.g, s) * (along * v), self.k ** (1 + self.order) * w
         return self._scale * np.array((*velocities, *stresses), dtype=complex)
+
+
+def _heights(z: Any) -> np.ndarray:
+    """Heights as a float array of the shape of z."""
+    array = z if isinstance(z, np.ndarray) else np.asarray(z, dtype=object)
+    values = array.ravel().tolist()
+    numbers = [as_number(value) for value in values]
+    if None in numbers:
+        raise ParameterError(f"z must be a number or an array of numbers (got {shown(values[numbers.index(None)])})")
+    return np.array(numbers, dtype=float).reshape(array.shape)
 
 
 def _values(samples: Any, s: np.ndarray) -> np.ndarray:

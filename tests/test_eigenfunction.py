@@ -200,13 +200,20 @@ def test_any_shape_of_z():
     assert mode.fields([[-0.2, 0.0], [-0.1, -0.7]]).p.shape == (2, 2)
 
 
-@pytest.mark.parametrize(("flow", "z", "interval"), [(DUNE, 0.1, r"\[-0.7, .*\]"), (FILM, -0.1, r"\[0, 1\]"),
+@pytest.mark.parametrize(("flow", "z", "interval"), [(DUNE, 0.1, r"\[-0.7, 0\]"), (FILM, -0.1, r"\[0, 1\]"),
                                                       (FILM, np.nan, r"\[0, 1\]"), (LID, 3.1, r"\[-0.7, 3\]"),
                                                       (flows.Poiseuille(), -1.1, r"\[-1, 1\]")])
 def test_heights_outside_are_refused(flow, z, interval):
     mode = dispersion(flow, K).modes[0]
     with pytest.raises(ParameterError, match=rf"z must lie in the layers of the flow, {interval} \(got {z:g}\)"):
         mode.fields([0.0, z])
+
+
+@pytest.mark.parametrize(("z", "got"), [(None, "None"), ("a", "'a'"), (0.1j, "0.1j"), ([0.0, [0.1]], r"\[0.1\]"),
+                                        ([0.0, np.complex128(0.1)], r".*0.1\+0j.*"), (np.array([0.1j]), "0.1j")])
+def test_heights_that_are_no_numbers_are_refused(z, got):
+    with pytest.raises(ParameterError, match=rf"^z must be a number or an array of numbers \(got {got}\)$"):
+        dispersion(FILM, K).modes[0].fields(z)
 
 
 @pytest.mark.parametrize("flow", [TWO, flows.Poiseuille()])
