@@ -133,8 +133,7 @@ def dispersion(relation: DispersionRelation, axis: "Axes", quantity: str) -> "Ax
 def spectra(found: list[Spectrum], axis: "Axes") -> "Axes":
     """Growth rates against phase speeds, a colour for each spectrum."""
     for one in found:
-        speeds = [mode.phase_speed for mode in one.modes]
-        axis.plot(speeds, one.sigma.real, "o", markersize=4, label=f"$k$ = {one.k:g}")
+        axis.plot(one.phase_speed, one.growth_rate, "o", markersize=4, label=f"$k$ = {one.k:g}")
     axis.axhline(0, color=GREY, linewidth=0.6)
     axis.set(xlabel=r"phase speed $c_r$", ylabel=r"growth rate $\sigma_r$")
     axis.legend()

@@ -28,7 +28,7 @@ _STEP = 1e-5
 _STENCILS = {-1: -0.5, 1: 0.5}, {0: -1.5, 1: 2.0, 2: -0.5}, {0: 1.5, -1: -2.0, -2: 0.5}  # offsets: weights
 _SAFETY = 2.0  # the errors of two slopes may cancel in part
 _ROUNDING = 1.0  # error of a slope in units of the rounding of sigma over the step (measured)
-_K_ERROR = 4.0  # error of d sigma/dk in units of error of sigma / k (measured)
+_EIGENVALUE = 4.0  # error of a slope in units of error of sigma / parameter, as `Mode.slope_error` has it for k
 _TOLERANCE = 1e-3  # error of a slope relative to itself, or to sigma / parameter, accepted as resolved
 
 
@@ -85,7 +85,7 @@ def sensitivities(mode: Mode) -> Sensitivities:
     """Return the slopes of a mode in k and in every numeric parameter, each at the others fixed, with error bars."""
     solver = Solver(mode.flow)
     refined = sharpened(solver, mode)
-    error = _SAFETY * abs(refined.slope - mode.slope) + _K_ERROR * mode.error / mode.k
+    error = _SAFETY * abs(refined.slope - mode.slope) + mode.slope_error
     in_k = _slope(mode, "k", mode.k, refined.slope, error)
     names = [item.name for item in fields(mode.flow) if "options" not in item.metadata]
     return Sensitivities(mode.flow, mode, (in_k, *(_in_parameter(solver, mode, refined, name) for name in names)))
@@ -102,7 +102,7 @@ def _in_parameter(solver: Solver, mode: Mode, refined: Mode, name: str) -> Slope
     except ParameterError as reason:
         return Slope(name, value, None, None, f"{NO_DERIVATIVE}: {reason}")
     scale = abs(value) or 1.0
-    error = _SAFETY * abs(fine - coarse) + _K_ERROR * mode.error / scale + _ROUNDING * mode.rounding / (_STEP * scale)
+    error = _SAFETY * abs(fine - coarse) + _EIGENVALUE * mode.error / scale + _ROUNDING * mode.rounding / (_STEP * scale)
     return _slope(mode, name, value, complex(fine), error)
 
 

@@ -53,9 +53,21 @@ class Spectrum(Record):
         return np.array([mode.sigma for mode in self.modes])
 
     @property
+    def growth_rate(self) -> np.ndarray:
+        return self.sigma.real
+
+    @property
+    def phase_speed(self) -> np.ndarray:
+        return np.array([mode.phase_speed for mode in self.modes])
+
+    @property
     def error(self) -> np.ndarray:
         """Error bars of sigma (modes,)."""
         return np.array([mode.error for mode in self.modes])
+
+    @property
+    def status(self) -> tuple[str, ...]:
+        return tuple(mode.status for mode in self.modes)
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Draw growth rates against phase speeds into the matplotlib Axes `ax`, or a new one; return it."""

@@ -234,6 +234,13 @@ def test_records_of_arrays_alone_are_equal_to_themselves():
         assert {one: 1}[one] == 1
 
 
+@pytest.mark.parametrize("name", ["dispersion", "spectrum"])
+def test_columns_of_the_table_are_attributes(record, name):
+    one = record(name)
+    for column in ("growth_rate", "phase_speed", "error", "status"):
+        assert list(getattr(one, column)) == [row[column] for row in one.rows()]
+
+
 def test_rows_are_json(record):
     for name in RECORDS:
         json.dumps(record(name).rows())
