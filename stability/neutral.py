@@ -48,8 +48,8 @@ _MARGIN = 1.15  # factor in k beyond the range asked for within which the curve 
 _SPAN = 1e4  # the continuation ends where the value has changed by this factor
 
 
-@dataclass(frozen=True)
-class NeutralPoint:
+@dataclass(frozen=True, repr=False)
+class NeutralPoint(Record):
     """A value of the parameter `vary` at which a mode neither grows nor decays.
 
     `k` is its wavenumber (0: long-wave threshold), `error` and `k_error` bound the absolute errors of `value`
@@ -65,8 +65,28 @@ class NeutralPoint:
     error: float | None
     k_error: float | None
     status: str
+    dimension: ClassVar[str] = "flow"
+
+    @property
+    def bounded(self) -> str:
+        return self.vary
+
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Mark (k, value) in the matplotlib Axes `ax`, that of a `NeutralCurve` say, or in a new one; return it."""
+        from . import plots
+
+        return plots.neutral_point(self, plots.axes_or_new(ax))
+
+    def rows(self) -> list[Row]:
+        row = self.row()
+        status = row.pop("status")
+        return [{**row, "k_error": self.k_error, "status": status}]
+
+    def about(self) -> dict[str, Any]:
+        return {"vary": self.vary}
 
     def row(self) -> Row:
+        """Return the row of this point in the table of a curve."""
         return {"k": self.k, self.vary: self.value, "phase_speed": self.phase_speed, "error": self.error,
                 "status": self.status}
 

@@ -7,7 +7,7 @@ import numpy as np
 from .eigenfunction import Eigenfunction
 from .errors import ParameterError
 from .mode import Mode
-from .neutral import NeutralCurve
+from .neutral import NeutralCurve, NeutralPoint
 from .optimum import Optima, Optimum
 from .relation import DispersionRelation
 from .sensitivity import Sensitivities
@@ -245,6 +245,14 @@ def neutral_curve(curve: NeutralCurve, axis: "Axes", quantity: str) -> "Axes":
         label = f"{curve.vary} {label}"
     axis.plot(*np.array(known, dtype=float).reshape(-1, 2).T, ".", color=BLUE, markersize=5)
     axis.set(xlabel="wavenumber $k$", ylabel=label, xscale="log" if _spans_decades(k) else "linear")
+    return axis
+
+
+def neutral_point(point: NeutralPoint, axis: "Axes") -> "Axes":
+    """The point at (k, value), as in the figure of a curve, with error bars."""
+    if point.k is not None and point.value is not None:
+        axis.errorbar(point.k, point.value, xerr=point.k_error, yerr=point.error, fmt="o", color=RED, markersize=5)
+    axis.set(xlabel="wavenumber $k$", ylabel=f"{point.vary} {NEUTRAL['value']}")
     return axis
 
 

@@ -102,8 +102,8 @@ def _in_parameter(solver: Solver, mode: Mode, refined: Mode, name: str) -> Slope
     except ParameterError as reason:
         return Slope(name, value, None, None, f"{NO_DERIVATIVE}: {reason}")
     scale = abs(value) or 1.0
-    error = _SAFETY * abs(fine - coarse) + _EIGENVALUE * mode.error / scale + _ROUNDING * mode.rounding / (_STEP * scale)
-    return _slope(mode, name, value, complex(fine), error)
+    error = (_EIGENVALUE * mode.error + _ROUNDING * mode.rounding / _STEP) / scale
+    return _slope(mode, name, value, complex(fine), _SAFETY * abs(fine - coarse) + error)
 
 
 def _slope(mode: Mode, name: str, value: float, slope: complex, error: float) -> Slope:

@@ -16,7 +16,7 @@ from stability import ParameterError, __version__, dispersion, flows, k_max, spe
 from stability.cli import main
 from stability.continuation import Continuation
 from stability.maps import parameter_map
-from stability.neutral import neutral_curve
+from stability.neutral import critical, neutral_curve
 from stability.optimum import Optima, k_max_sweep
 from stability.sensitivity import sensitivities
 from stability.wellposed import growth_with_degree, well_posedness
@@ -39,6 +39,8 @@ RECORDS = {
     "none": lambda: k_max(flows.Vortex(), strict=False),
     "sweep": sweep,
     "neutral": lambda: neutral_curve(flows.Poiseuille(), "Re", [1.0, 1.2]),
+    "critical": lambda: critical(flows.Film(slope_deg=45.0), "Re"),
+    "no critical": lambda: critical(flows.Vortex(), "slope_deg", strict=False),
     "sensitivity": lambda: sensitivities(dispersion(BED, 1.0).modes[0]),
 }
 COMMANDS = {
@@ -68,7 +70,7 @@ def record():
     return cache(lambda name: {**RECORDS, **OTHERS}[name]())
 
 
-@pytest.mark.parametrize("name", RECORDS)
+@pytest.mark.parametrize("name", COMMANDS)
 @pytest.mark.parametrize("form", ["csv", "json"])
 def test_files_are_those_of_the_command_line(tmp_path, capsys, record, name, form):
     target = tmp_path / f"a b é {name}.{form}"
@@ -181,6 +183,25 @@ def test_a_relation_is_drawn_in_the_order_of_k(record):
     assert speed.tolist() == [one.phase_speed[i] for i in (1, 0, 2)]
     with pytest.raises(ParameterError, match="quantity must be one of growth_rate, phase_speed"):
         one.plot(axis, "colour")
+
+
+@pytest.mark.parametrize(("name", "words"), [("critical", "critical film --slope-deg 45 --vary Re --json"),
+                                            ("no critical", "critical vortex --vary slope_deg --json")])
+def test_a_neutral_point_has_the_row_of_the_verb_critical(tmp_path, capsys, record, name, words):
+    main(words.split())
+    target = tmp_path / "x.json"
+    record(name).to_json(target)
+    assert json.loads(capsys.readouterr().out)["rows"] == json.loads(target.read_text())["rows"]
+
+
+def test_a_neutral_point_is_marked_on_its_curve(record):
+    axis = record("neutral").plot(Figure().subplots())
+    before = axis.get_xlabel(), axis.get_ylabel()
+    point = critical(flows.Poiseuille(), "Re")
+    assert point.plot(axis) is axis
+    assert (axis.get_xlabel(), axis.get_ylabel()) == before
+    (x,), (y,) = axis.lines[-1].get_data()
+    assert (x, y) == (point.k, point.value)
 
 
 @pytest.mark.parametrize("k", [1.0, [1.0], (1,), np.array([1.0]), np.float64(1.0)])

@@ -26,8 +26,6 @@ def _run(arguments):
 
     def compute():
         point = critical(flow, vary, long_wave=arguments.long_wave, strict=False, **options)
-        row = point.row()
-        status = row.pop("status")
-        return [{**row, "k_error": point.k_error, "status": status}], (None, [point]), []
+        return point.rows(), (None, [point]), []
 
     return report(arguments, flow, compute)
