@@ -12,6 +12,7 @@ import pytest
 from matplotlib.figure import Figure
 from scipy.io import netcdf_file
 
+import stability
 from stability import ParameterError, __version__, dispersion, flows, k_max, spectrum
 from stability.cli import main
 from stability.continuation import Continuation
@@ -260,6 +261,19 @@ def test_columns_of_the_table_are_attributes(record, name):
     one = record(name)
     for column in ("growth_rate", "phase_speed", "error", "status"):
         assert list(getattr(one, column)) == [row[column] for row in one.rows()]
+
+
+def test_the_package_offers_what_it_lists():
+    """Some of it is imported only when asked for, so that the rest starts sooner."""
+    late = ["stability.maps", "stability.neutral", "stability.sensitivity", "multiprocessing"]
+    code = (f"import sys, stability; print([name for name in {late} if name in sys.modules]); "
+            "print(all(callable(getattr(stability, name)) for name in stability.__all__ if name != 'flows'))")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\nTrue\n"
+    assert set(stability.__all__) <= set(dir(stability))
+    assert stability.parameter_map is parameter_map
+    with pytest.raises(AttributeError, match="^module 'stability' has no attribute 'speed'$"):
+        stability.speed  # noqa: B018
 
 
 def test_rows_are_json(record):
