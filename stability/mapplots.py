@@ -1,9 +1,13 @@
-"""Figures of maps: lines over one axis, colours over two; jumps between branches drawn, doubtful points hatched."""
+"""Figures of maps: lines over one axis, colours over two; jumps between branches drawn, doubtful points hatched.
+
+An infinite value of a parameter is drawn as one more cell, set apart, beside the finite ones.
+"""
 
 from typing import Any
 
 import numpy as np
 
+from .checks import check_options
 from .errors import ParameterError
 from .plots import BLUE, DISPERSION, GREY, NEUTRAL, OPTIMA, RED
 from .status import is_outgrown, is_settled, is_stable
@@ -28,6 +32,7 @@ def panel(found, axis, column):
     names = list(found.axes)
     if len(names) > 2:
         raise ParameterError(f"only maps over one or two axes are drawn (this one has {', '.join(names)})")
+    column = check_options("quantity", column, found.results[:-1])
     label, doubtful = labels(found).get(column, column), states(found["status"])
     if len(names) == 1:
         _lines(axis, found, column, doubtful)
@@ -67,20 +72,18 @@ def _legend(figure, found, doubtful):
 
 
 def _lines(axis, found, column, doubtful):
-    (x,), y = found.axes.values(), found[column]
-    order = np.argsort(x, kind="stable")
-    x, y = x[order], y[order]
+    (values,), y = found.axes.values(), found[column]
+    order = np.argsort(values, kind="stable")
+    x, y = _places(values)[order], y[order]
+    gaps = np.isinf(values[order])[1:]
     if f"second_{column}" in found.results:
         second = found[f"second_{column}"][order]
         if np.isfinite(second).any():
             axis.plot(x, second, ".", color=RED, markersize=4, label="second maximum")
             axis.legend()
     if found.quantity == "k_max":
-        (change,) = branch_changes(found)
-        x_line, y_line = np.insert(x, change.nonzero()[0] + 1, np.nan), np.insert(y, change.nonzero()[0] + 1, np.nan)
-    else:
-        x_line, y_line = x, y
-    axis.plot(x_line, y_line, ".-", color=BLUE, markersize=4)
+        gaps = gaps | branch_changes(found)[0]
+    axis.plot(*(np.insert(part, gaps.nonzero()[0] + 1, np.nan) for part in (x, y)), ".-", color=BLUE, markersize=4)
     _scale(axis, "x", x)
     axis.set_yscale("log" if _spans_decades(y) else "linear")
     edges = cell_edges(x)
@@ -88,20 +91,24 @@ def _lines(axis, found, column, doubtful):
         for index in where[order].nonzero()[0]:
             axis.axvspan(edges[index], edges[index + 1], facecolor="none", edgecolor=GREY, hatch=HATCHES[name],
                          linewidth=0)
+    axis.margins(x=0)
+    _set_infinity_apart(axis, "x", values, GREY, 0.6)
 
 
 def _colours(axis, found, column, label, doubtful):
-    y, x = found.axes.values()
+    y, x = (_places(values) for values in found.axes.values())
     image = mesh(axis, x, y, found[column])
     axis.figure.colorbar(image, ax=axis, label=label)
     for name, where in doubtful.items():
         hatch(axis, x, y, where, HATCHES[name])
     if found.quantity == "k_max":
         jumps(axis, x, y, *branch_changes(found))
-    if column == "growth_rate" and image.get_cmap().name == _SIGNED and min(found.request.shape) > 1:
-        rows, columns = np.argsort(y, kind="stable"), np.argsort(x, kind="stable")
+    rows, columns = (np.argsort(values, kind="stable")[:np.isfinite(values).sum()] for values in found.axes.values())
+    if column == "growth_rate" and image.get_cmap().name == _SIGNED and min(len(rows), len(columns)) > 1:
         axis.contour(x[columns], y[rows], found[column][np.ix_(rows, columns)], levels=[0.0], colors="k",
                      linewidths=0.8)
+    for which, values in zip("yx", found.axes.values(), strict=True):
+        _set_infinity_apart(axis, which, values, "w", 3.0)
 
 
 def mesh(axis, x, y, values):
@@ -123,6 +130,33 @@ def mesh(axis, x, y, values):
     _scale(axis, "x", x)
     _scale(axis, "y", y)
     return image
+
+
+def _places(values):
+    """Where the values are drawn: infinity as far beyond the largest of the others as its cell is wide."""
+    finite = np.unique(values[np.isfinite(values)])
+    if not len(finite):
+        return np.zeros_like(values)
+    edge = cell_edges(finite)[-1]
+    beyond = edge**2 / finite[-1] if is_logarithmic(finite) else 2 * edge - finite[-1]
+    return np.where(np.isinf(values), beyond, values)
+
+
+def _set_infinity_apart(axes, which, values, color, width):
+    """Draw a line before the cell of infinity, which has a tick of its own; the others end there."""
+    if not np.isinf(values).any():
+        return
+    places = np.unique(_places(values))
+    low, edge, high = cell_edges(places)[[0, -2, -1]]
+    axes.set(**{f"{which}lim": (low, high)})
+    {"x": axes.axvline, "y": axes.axhline}[which](edge, color=color, linewidth=width)
+    axis = {"x": axes.xaxis, "y": axes.yaxis}[which]
+    for minor in (True, False):
+        ticks = [tick for tick in axis.get_ticklocs(minor=minor) if low <= tick < edge]
+        labels = (axis.get_minor_formatter() if minor else axis.get_major_formatter()).format_ticks(ticks)
+        if not minor:
+            ticks, labels = [*ticks, places[-1]], [*labels, r"$\infty$"]
+        axis.set_ticks(ticks, labels, minor=minor)
 
 
 def _scale(axes, which, values):

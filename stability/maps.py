@@ -250,7 +250,7 @@ class Map(Record):
         """Draw a result (the first, by default) over one or two axes into the matplotlib Axes `ax`, or a new one."""
         from . import mapplots, plots
 
-        return mapplots.panel(self, plots.axes_or_new(ax), quantity or self.results[0])
+        return mapplots.panel(self, plots.axes_or_new(ax), self.results[0] if quantity is None else quantity)
 
 
 def _short(value):

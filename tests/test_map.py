@@ -376,6 +376,50 @@ def test_maps_are_drawn(tmp_path, capsys, words):
     assert len(list(tmp_path.iterdir())) == 2
 
 
+@pytest.mark.parametrize("over", [{"depth": [np.inf, 1.0, 5.0]}, {"shields": [1.5, 2.0], "depth": [1.0, 10.0, np.inf]},
+                                  {"depth": [np.inf, 2.0], "shields": [1.5, 2.0]}, {"depth": [np.inf]}])
+def test_infinity_is_drawn_as_one_more_cell(over):
+    found = _with_k_max(over)
+    axis = found.plot(Figure().subplots())
+    which = axis.yaxis if list(over)[0] == "depth" and len(over) == 2 else axis.xaxis
+    low, high = which.get_view_interval()
+    *ticks, last = which.get_ticklocs()
+    *labels, name = [label.get_text() for label in which.get_ticklabels()]
+    assert name == "$\\infty$"
+    assert not any("infty" in label for label in labels)
+    assert low < last < high
+    assert all(low <= tick < last for tick in ticks)
+    if len(over) == 2:
+        order = np.ix_(*(np.argsort(values) for values in over.values()))
+        assert axis.collections[0].get_array().tolist() == found["k_max"][order].tolist()
+    else:
+        x, y = axis.lines[0].get_data()
+        assert x[-1] == last
+        assert y[-1] == found["k_max"][0]
+        assert np.isnan(y[-2:-1]).all()  # apart from the line of finite values
+
+
+def _with_k_max(over):
+    """A map of k_max with made-up values."""
+    request = Request(flows.Dune(), over, "k_max")
+    rows = [(1.0 + index, 1.0, 1.0, 0.0, 0.0, 1, None, None, "resolved") for index in range(request.size)]
+    return maps.Map(request, tuple(rows))
+
+
+def test_the_zero_of_growth_is_not_drawn_into_the_cell_of_infinity():
+    found = parameter_map(flows.Dune(), {"depth": [0.3, 1.0, 3.0, np.inf]}, k=[0.5, 1.5, 2.5, 3.5])
+    axis = found.plot(Figure().subplots())
+    (contour,) = (path for one in axis.collections[1:] for path in one.get_paths())
+    assert 0.3 <= contour.vertices[:, 1].min() < contour.vertices[:, 1].max() <= 3
+
+
+@pytest.mark.parametrize("quantity", ["status", "speed", "shields", 3])
+def test_what_cannot_be_drawn_is_refused(small, quantity):
+    columns = "k_max, growth_rate, phase_speed, error, growth_error, maxima, second_k_max, second_growth_rate"
+    with pytest.raises(ParameterError, match=rf"^quantity must be one of {columns} \(got {quantity!r}\)$"):
+        small.plot(Figure().subplots(), quantity)
+
+
 def test_progress_shows_the_time_left():
     from stability.verbs.progress import bar
 
