@@ -10,7 +10,7 @@ import sys
 from . import __version__
 from .errors import ParameterError, StabilityError
 from .verbs import VERBS
-from .verbs.common import nearest_flag
+from .verbs.common import Once, nearest_flag
 
 
 def main(argv=None):
@@ -42,10 +42,13 @@ def _fail(reason, status):
 
 
 class _Parser(argparse.ArgumentParser):
-    """Errors as exceptions; examples in one line, to be copied."""
+    """Errors as exceptions; no value is given twice; examples in one line, to be copied."""
 
     def __init__(self, **options):
         super().__init__(formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False, **options)
+        for action in (None, "store"):
+            self.register("action", action, Once)
+        self.set_defaults(given=frozenset())
 
     def error(self, message):
         raise ParameterError(f"{message} (see: {self.prog} --help)")

@@ -17,6 +17,14 @@ def parse_spec(text, name, positive=True):
     return values
 
 
+def parse_one(text, name, what="value"):
+    """Return a SPEC of a single positive number as a float; `what` names it in the message."""
+    values = parse_spec(text, name)
+    if len(values) != 1:
+        raise ParameterError(f"{name}: one {what} at a time (got {len(values)})")
+    return float(values[0])
+
+
 def _range(text, name):
     parts = text.split(":")
     linear = parts[3:] == ["lin"]

@@ -119,6 +119,17 @@ def test_help_lists_the_parameters_of_the_flow_that_is_named(capsys):
     assert "Reynolds number of depth and surface speed" in " ".join(film.split())
 
 
+def test_parameters_are_spelled_either_way(capsys):
+    for spelling in ("--slope-deg", "--slope_deg"):
+        status, out, _ = run(capsys, "dispersion", "vortex", "--k", "1", spelling, "25", "--csv")
+        assert (status, "# slope_deg: 25.0" in out) == (0, True)
+    assert "slope_deg" not in helped(capsys, "dispersion", "vortex")
+
+
+def test_flags_may_be_repeated(capsys):
+    assert run(capsys, "dispersion", "vortex", "--k", "1", "--csv", "--csv", "--quiet", "--quiet")[0] == 0
+
+
 def test_a_nearby_parameter_is_suggested(capsys):
     status, _, err = run(capsys, "dispersion", "dune", "--k", "1", "--shield=3")
     assert status == 2
@@ -133,6 +144,26 @@ BAD = [
      "--over: given twice, with 'Re=1,2' and 'shields=2'; join values with commas, and sweep several parameters with: "
      "stability map"),
     (("dispersion", "dune", "--k", "1", "--k", "2"), "--k: given twice, with '1' and '2'; join values with commas"),
+    (("kmax", "dune", "--Re", "5", "--Re", "50"),
+     "--Re: given twice, with '5' and '50'; sweep it with: --over Re=5,50"),
+    (("dispersion", "vortex", "--k", "1", "--slope_deg", "20", "--slope-deg=30"),
+     "--slope-deg: given twice, with '20' and '30'; sweep it with: stability map --over slope_deg=20,30"),
+    (("dispersion", "dune", "--k", "1", "--fluid", "layer", "--fluid", "layer"),
+     "--fluid: given twice, with 'layer' and 'layer'; give it once"),
+    (("compare", "vortex", "--k", "1", "--k", "2"), "--k: given twice, with '1' and '2'; give it once"),
+    *(((*question, option, "1", option, "2"), f"{option}: given twice, with '1' and '2'; give it once")
+      for question, options in ((("dispersion", "dune", "--k", "1"), ("-o", "--plot", "--mode", "--tolerance")),
+                                (("critical", "film"), ("--vary", "--max-degree")),
+                                (("map", "film", "--over", "We=1"), ("--workers", "--quantity")))
+      for option in options),
+    (("compare", "vortex", "--k", "1", "--tolerance", "1e-9"), "unknown option '--tolerance'"),
+    (("wellposed", "dune", "--max-degree", "64"), "unknown option '--max-degree'"),
+    (("dispersion", "dune", "--k", "1", "--method", "bvp", "--max-degree", "512"),
+     "--max-degree: --method bvp does not use it"),
+    (("kmax", "vortex", "--method", "bvp-thesis", "--tolerance", "1e-10"),
+     "--tolerance: --method bvp-thesis does not use it"),
+    (("dispersion", "vortex", "--k", "1", "--method", "bvp-thesis", "--delta", "0.01,0.02"),
+     "--delta: one value at a time (got 2)"),
     (("flows", "vrtex"), "unknown flow 'vrtex' (did you mean 'vortex'?)"),
     (("dispersion", "vrtex", "--k", "1"), "unknown flow 'vrtex'"),
     (("dispersion", "dune", "--Rex", "3", "--k", "1"), "unknown option '--Rex'"),

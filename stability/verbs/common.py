@@ -16,10 +16,12 @@ from ..status import INTERRUPTED, is_settled
 from .progress import Bar
 
 SPEC = "a number, a list a,b,c, or a range a:b:n (log-spaced) or a:b:n:lin"
-MORE = ", and sweep several parameters with: stability map"  # where --over sweeps one
 INTERRUPTED_STATUS = 130  # of the command
 _FORMS = {".csv": "csv", ".json": "json"}  # that the ending of a file stands for
 _PLOTS = (".png", ".pdf", ".svg")
+_NUMBER = "V"  # metavar of a numeric parameter of a flow
+_JOIN = "join values with commas"
+_REMEDIES = {"SPEC": _JOIN, "NAME=SPEC": f"{_JOIN}, and sweep several parameters with: stability map"}  # by metavar
 
 
 def add_verb(verbs, name, run, summary, example, *options):
@@ -29,9 +31,6 @@ def add_verb(verbs, name, run, summary, example, *options):
     verb.add_argument("flow", metavar="FLOW", help=f"one of {', '.join(FLOWS)}")
     for option in options:
         option(verb)
-    verb.add_argument("--tolerance", metavar="T", default=str(TOLERANCE),
-                      help="relative error of sigma accepted as resolved")
-    verb.add_argument("--max-degree", metavar="N", default=str(DEGREES[-1]), help="largest Chebyshev degree tried")
     form = verb.add_mutually_exclusive_group()
     form.add_argument("--csv", dest="form", action="store_const", const="csv", help="comma-separated values")
     form.add_argument("--json", dest="form", action="store_const", const="json", help="JSON")
@@ -62,21 +61,29 @@ class _Help(argparse.Action):
 
 
 class Once(argparse.Action):
-    """An option that asks for values: given twice, the first ones must not get lost."""
+    """Store a value, and in `given` that it was given: twice is refused, or the first value would get lost."""
 
     def __call__(self, parser, namespace, values, option_string=None):
-        before = getattr(namespace, self.dest)
-        if before is not None:
-            raise ParameterError(f"{option_string}: given twice, with {before!r} and {values!r}; "
-                                 f"join values with commas{self.const or ''}")
+        if self.dest in namespace.given:
+            raise ParameterError(f"{option_string}: given twice, with {getattr(namespace, self.dest)!r} and "
+                                 f"{values!r}; {self._remedy(parser, getattr(namespace, self.dest), values)}")
         setattr(namespace, self.dest, values)
+        namespace.given |= {self.dest}
+
+    def _remedy(self, parser, *values):
+        if self.metavar == _NUMBER:
+            sweep = "--over" if "--over" in parser.format_usage() else "stability map --over"
+            return f"sweep it with: {sweep} {self.dest.partition(' ')[2]}={','.join(values)}"
+        return _REMEDIES.get(self.metavar, "give it once")
 
 
 def _add_parameters(verb):
     """Add a flag for every parameter of every flow, and return their group; `_Help` shows those of one flow."""
     group = verb.add_argument_group("parameters of the flow", f"listed by: {verb.prog} FLOW --help")
-    for name in dict.fromkeys(flag(item) for flow in FLOWS.values() for item in fields(flow)):
-        group.add_argument(name, dest=f"parameter {name[2:].replace('-', '_')}", metavar="V", help=argparse.SUPPRESS)
+    for name, item in {item.name: item for flow in FLOWS.values() for item in fields(flow)}.items():
+        for spelling in dict.fromkeys((flag(item), f"--{name}")):
+            group.add_argument(spelling, dest=f"parameter {name}", help=argparse.SUPPRESS,
+                               metavar="NAME" if "options" in item.metadata else _NUMBER)
     return group
 
 
@@ -92,7 +99,14 @@ def nearest_flag(arguments, unknown):
 
 
 def k_option(verb):
-    verb.add_argument("--k", action=Once, required=True, metavar="SPEC", help=f"wavenumbers: {SPEC}")
+    verb.add_argument("--k", required=True, metavar="SPEC", help=f"wavenumbers: {SPEC}")
+
+
+def accuracy_options(verb):
+    """Options of the verbs that compute with `options_of`."""
+    verb.add_argument("--tolerance", metavar="T", default=str(TOLERANCE),
+                      help="relative error of sigma accepted as resolved")
+    verb.add_argument("--max-degree", metavar="N", default=str(DEGREES[-1]), help="largest Chebyshev degree tried")
 
 
 def flow_class(name):

@@ -1,9 +1,8 @@
 """stability compare: all methods on one eigenvalue, their errors and times."""
 
-from ..errors import ParameterError
-from ..specs import parse_spec
+from ..specs import parse_one
 from ..status import RESOLVED
-from .common import Once, add_verb, flow_of, report
+from .common import add_verb, flow_of, report
 from .progress import Bar
 
 
@@ -13,21 +12,19 @@ def add(verbs):
 
 
 def _k_option(verb):
-    verb.add_argument("--k", action=Once, required=True, metavar="K", help="wavenumber")
+    verb.add_argument("--k", required=True, metavar="K", help="wavenumber")
 
 
 def _run(arguments):
     flow = flow_of(arguments)
-    k = parse_spec(arguments.k, "--k")
-    if len(k) != 1:
-        raise ParameterError(f"--k: one wavenumber is compared at a time (got {len(k)})")
+    k = parse_one(arguments.k, "--k", "wavenumber")
 
     def compute():
         from ..compare import compare
 
         bar = Bar(arguments.quiet)
         try:
-            found = compare(flow, float(k[0]), report=bar)
+            found = compare(flow, k, report=bar)
         finally:
             bar.clear()
         known = found.reference

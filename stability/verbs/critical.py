@@ -1,11 +1,11 @@
 """stability critical: the value of a parameter at which a flow becomes unstable."""
 
-from .common import add_verb, flow_of, options_of, report
+from .common import accuracy_options, add_verb, flow_of, options_of, report
 
 
 def add(verbs):
     add_verb(verbs, "critical", _run, "the value of a parameter at which the first wavenumber becomes unstable",
-             "stability critical poiseuille --vary Re", vary_option, long_wave_option)
+             "stability critical poiseuille --vary Re", vary_option, long_wave_option, accuracy_options)
 
 
 def vary_option(verb, required=True):

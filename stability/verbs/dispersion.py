@@ -6,14 +6,14 @@ from ..errors import ParameterError
 from ..relation import MODES, DispersionRelation, default_mode, dispersion_parts, joined
 from ..specs import parse_spec
 from ..status import INTERRUPTED
-from .common import add_verb, collect, flow_of, k_option, options_of, report
+from .common import accuracy_options, add_verb, collect, flow_of, k_option, options_of, report
 from .methods import method_of, method_options
 
 
 def add(verbs):
     add_verb(verbs, "dispersion", _run, "growth rate and phase speed over wavenumbers",
              "stability dispersion dune --Re 100 --k 1e-2:10:50 --plot dune.png",
-             k_option, _mode_option, method_options)
+             k_option, _mode_option, method_options, accuracy_options)
 
 
 def _mode_option(verb):

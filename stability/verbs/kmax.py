@@ -3,18 +3,18 @@
 from ..errors import StabilityError
 from ..optimum import Optima, Optimum, k_max_sweep
 from ..status import INTERRUPTED
-from .common import MORE, SPEC, Once, add_verb, collect, flow_of, options_of, report, sweep_of
+from .common import SPEC, accuracy_options, add_verb, collect, flow_of, options_of, report, sweep_of
 from .methods import method_of, method_options
 
 
 def add(verbs):
     add_verb(verbs, "kmax", _run, "the fastest growing wavenumber, over a parameter",
-             "stability kmax dune --over Re=0.1:1e4:41 --plot kmax.png", _over_option, method_options)
+             "stability kmax dune --over Re=0.1:1e4:41 --plot kmax.png", _over_option, method_options,
+             accuracy_options)
 
 
 def _over_option(verb):
-    verb.add_argument("--over", action=Once, const=MORE, metavar="NAME=SPEC",
-                      help=f"parameter to sweep and its values: {SPEC}")
+    verb.add_argument("--over", metavar="NAME=SPEC", help=f"parameter to sweep and its values: {SPEC}")
 
 
 def _run(arguments):

@@ -6,7 +6,17 @@ from pathlib import Path
 from ..checks import check_integer
 from ..errors import ParameterError
 from ..specs import parse_spec
-from .common import INTERRUPTED_STATUS, SPEC, Once, add_verb, check_files, flow_of, options_of, report, swept_values
+from .common import (
+    INTERRUPTED_STATUS,
+    SPEC,
+    accuracy_options,
+    add_verb,
+    check_files,
+    flow_of,
+    options_of,
+    report,
+    swept_values,
+)
 from .critical import vary_option
 from .progress import Bar
 
@@ -16,7 +26,8 @@ _DRAWN_AXES = 2
 
 def add(verbs):
     add_verb(verbs, "map", _run, "a quantity over one to three parameters, on all cores; continues after Ctrl-C",
-             "stability map dune --over shields=1.1:4:20 --over Re=0.1:1e4:20 -o dunes.csv --plot dunes.png", _options)
+             "stability map dune --over shields=1.1:4:20 --over Re=0.1:1e4:20 -o dunes.csv --plot dunes.png", _options,
+             accuracy_options)
 
 
 def _options(verb):
@@ -24,7 +35,7 @@ def _options(verb):
                       help=f"parameter to sweep and its values, once to three times, the innermost last: {SPEC}")
     verb.add_argument("--quantity", metavar="Q", help="k_max (the default), growth_rate (the default with --k), or "
                       "neutral (with --vary)")
-    verb.add_argument("--k", action=Once, metavar="SPEC", help="wavenumbers: growth rates over them too")
+    verb.add_argument("--k", metavar="SPEC", help="wavenumbers: growth rates over them too")
     vary_option(verb, required=False)
     verb.add_argument("--workers", metavar="N", help="processes; default: as many as there are cores to use")
 

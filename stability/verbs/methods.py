@@ -1,9 +1,10 @@
 """The options that choose how a surface mode is computed: collocation, or continuation by solve_bvp."""
 
 from ..errors import ParameterError
-from ..specs import parse_spec
+from ..specs import parse_one
 
 METHODS = ("collocation", "bvp", "bvp-thesis")
+_UNUSED = {"collocation": set(), "bvp": {"max_degree"}, "bvp-thesis": {"tolerance", "max_degree"}}
 
 
 def method_options(verb):
@@ -21,11 +22,13 @@ def method_of(arguments, flow, tolerance):
         raise ParameterError(f"--method: must be one of {', '.join(METHODS)} (got {arguments.method!r})")
     if arguments.delta is not None and arguments.method != "bvp-thesis":
         raise ParameterError("--delta: only --method bvp-thesis regularises the free surface")
+    for option in sorted(_UNUSED[arguments.method] & arguments.given):
+        raise ParameterError(f"--{option.replace('_', '-')}: --method {arguments.method} does not use it; leave it out")
     if arguments.method == "collocation":
         return None
     from ..thesis import THESIS_RESIDUAL, thesis_setting
 
     if arguments.method == "bvp":
         return {"tolerance": tolerance}
-    delta = None if arguments.delta is None else float(parse_spec(arguments.delta, "--delta")[0])
+    delta = None if arguments.delta is None else parse_one(arguments.delta, "--delta")
     return {"residual": THESIS_RESIDUAL, "setting": thesis_setting(flow, delta)}

@@ -3,21 +3,21 @@
 from ..errors import ParameterError
 from ..specs import parse_spec
 from ..status import INTERRUPTED
-from .common import MORE, SPEC, Once, add_verb, collect, flow_of, options_of, report, sweep_of
+from .common import SPEC, accuracy_options, add_verb, collect, flow_of, options_of, report, sweep_of
 from .critical import long_wave_option, vary_option
 
 
 def add(verbs):
     add_verb(verbs, "neutral", _run, "the value of a parameter at which growth vanishes, over another or over k",
              "stability neutral poiseuille --vary Re --k 0.8:1.09:30:lin --plot neutral.png",
-             vary_option, _over_or_k_option, long_wave_option)
+             vary_option, _over_or_k_option, long_wave_option, accuracy_options)
 
 
 def _over_or_k_option(verb):
     either = verb.add_mutually_exclusive_group(required=True)
-    either.add_argument("--over", action=Once, const=MORE, metavar="NAME=SPEC",
+    either.add_argument("--over", metavar="NAME=SPEC",
                         help=f"second parameter: zero growth of the most unstable wavenumber at each value; {SPEC}")
-    either.add_argument("--k", action=Once, metavar="SPEC",
+    either.add_argument("--k", metavar="SPEC",
                         help=f"wavenumbers: all branches of the neutral curve at each; {SPEC}")
 
 

@@ -2,19 +2,19 @@
 
 from ..errors import ModeLost, ParameterError
 from ..relation import MODES, default_mode, dispersion
-from ..specs import parse_spec
-from .common import Once, add_verb, flow_of, options_of, report
+from ..specs import parse_one
+from .common import accuracy_options, add_verb, flow_of, options_of, report
 
 _MODES = MODES[:2]  # a mode that can be followed
 
 
 def add(verbs):
     add_verb(verbs, "sensitivity", _run, "how growth rate and phase speed change with every parameter",
-             "stability sensitivity dune --k 1 --plot dune.png", _k_option, _mode_option)
+             "stability sensitivity dune --k 1 --plot dune.png", _k_option, _mode_option, accuracy_options)
 
 
 def _k_option(verb):
-    verb.add_argument("--k", action=Once, required=True, metavar="K", help="wavenumber")
+    verb.add_argument("--k", required=True, metavar="K", help="wavenumber")
 
 
 def _mode_option(verb):
@@ -24,9 +24,7 @@ def _mode_option(verb):
 
 def _run(arguments):
     flow, options = flow_of(arguments), options_of(arguments)
-    k = parse_spec(arguments.k, "--k")
-    if len(k) != 1:
-        raise ParameterError(f"--k: one wavenumber at a time (got {len(k)})")
+    k = parse_one(arguments.k, "--k", "wavenumber")
     mode = arguments.mode or default_mode(flow)
     if mode not in _MODES:
         raise ParameterError(f"--mode: must be one of {', '.join(_MODES)} (got {mode!r})")

@@ -5,12 +5,13 @@ from ..specs import parse_spec
 from ..spectra import MOST, spectrum
 from ..status import INTERRUPTED
 from ..wellposed import notes_on
-from .common import add_verb, collect, flow_of, k_option, options_of, report
+from .common import accuracy_options, add_verb, collect, flow_of, k_option, options_of, report
 
 
 def add(verbs):
     add_verb(verbs, "spectrum", _run, "the least stable modes at one wavenumber",
-             "stability spectrum vortex --k 2 --modes 5", k_option, _modes_option)
+             "stability spectrum vortex --k 2 --modes 5", k_option, _modes_option,
+             accuracy_options)
 
 
 def _modes_option(verb):

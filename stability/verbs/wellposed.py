@@ -4,7 +4,7 @@ from ..checks import check_integer
 from ..specs import parse_spec
 from ..status import INTERRUPTED, RESOLVED
 from ..wellposed import growth_with_degree, well_posedness
-from .common import Once, add_verb, collect, flow_of, report
+from .common import add_verb, collect, flow_of, report
 
 _POINTS = "21"
 _WAVENUMBERS = "1:100:9"  # of the second panel of the figure
@@ -16,7 +16,7 @@ def add(verbs):
 
 
 def _k_option(verb):
-    verb.add_argument("--k", action=Once, metavar="SPEC",
+    verb.add_argument("--k", metavar="SPEC",
                       help="wavenumbers: report the largest growth rate of all modes there, by Chebyshev degree, "
                            "instead of C through the layer")
 
