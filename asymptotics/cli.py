@@ -6,12 +6,15 @@ Exit status: 0 done; 2 bad usage or input; 3 `check` found another order than ex
 import argparse
 import json
 import os
+import shutil
 import sys
 from difflib import get_close_matches
+from textwrap import wrap
 
 from . import __version__
 
 VERBS = ("flows", "expand", "check")
+_INDENT = " " * 8  # of what is left of a line wider than the terminal
 
 
 class BadUsage(ValueError):
@@ -19,10 +22,13 @@ class BadUsage(ValueError):
 
 
 class _Parser(argparse.ArgumentParser):
-    """Errors as exceptions; examples in one line, to be copied."""
+    """Errors as exceptions; no value is given twice; examples in one line, to be copied."""
 
     def __init__(self, **options):
         super().__init__(formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False, **options)
+        for action in (None, "store"):
+            self.register("action", action, _Once)
+        self.set_defaults(given=frozenset())
 
     def error(self, message):
         raise BadUsage(f"{message} (see: {self.prog} --help)")
@@ -30,6 +36,17 @@ class _Parser(argparse.ArgumentParser):
     def exit(self, status=0, message=None):
         sys.stdout.flush()  # of the help: where nobody reads it, say so in `main`
         super().exit(status, message)
+
+
+class _Once(argparse.Action):
+    """Store a value, and in `given` that it was given: twice is refused, or the first value would get lost."""
+
+    def __call__(self, parser, namespace, values, option_string=None):
+        if self.dest in namespace.given:
+            raise BadUsage(f"{option_string}: given twice, with {getattr(namespace, self.dest)!r} and {values!r}; "
+                           "give it once")
+        setattr(namespace, self.dest, values)
+        namespace.given |= {self.dest}
 
 
 class _Help(argparse.Action):
@@ -133,7 +150,8 @@ def _add_parameters(verb) -> None:
     group = verb.add_argument_group("parameters of the flow", f"listed by: {verb.prog} FLOW --help")
     known = {parameter.flag: parameter.name for name in flows.names() for parameter in flows.load(name).PARAMETERS}
     for flag, name in known.items():
-        group.add_argument(flag, dest=f"parameter {name}", metavar="V", help=argparse.SUPPRESS)
+        for spelling in dict.fromkeys((flag, f"--{name}")):
+            group.add_argument(spelling, dest=f"parameter {name}", metavar="V", help=argparse.SUPPRESS)
     verb.set_defaults(parameters=group)
 
 
@@ -144,7 +162,7 @@ def _flows(arguments) -> int:
     from . import flows
 
     chosen = [arguments.flow] if arguments.flow else flows.names()
-    print("\n".join(_describe(name, _load(name)) for name in chosen))
+    print(_folded("\n".join(_describe(name, _load(name)) for name in chosen)))
     return 0
 
 
@@ -163,7 +181,7 @@ def _expand(arguments) -> int:
 
     _load(arguments.flow)
     expansion = flows.expand(arguments.flow, arguments.regime, arguments.order, **_given(arguments))
-    writer = {"json": _json, "latex": _latex, None: _table}[arguments.form]
+    writer = {"json": _json, "latex": _latex, None: lambda expansion: _folded(_table(expansion))}[arguments.form]
     print(writer(expansion))
     return 0
 
@@ -292,6 +310,16 @@ class _keep_open:
 
 
 # -- output ----------------------------------------------------------------------------------------------
+
+
+def _folded(text: str) -> str:
+    """Lines no wider than the terminal that standard output is, where they can be broken at spaces."""
+    if not sys.stdout.isatty():
+        return text
+    width = shutil.get_terminal_size().columns
+    return "\n".join(part for line in text.splitlines()
+                     for part in wrap(line, width, subsequent_indent=_INDENT, break_long_words=False,
+                                      break_on_hyphens=False) or [line])
 
 
 def _json(expansion) -> str:

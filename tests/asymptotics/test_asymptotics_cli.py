@@ -105,6 +105,9 @@ def test_order_and_default_regime(capsys):
     (["flows", "dune", "film"], ["unknown argument 'film'"]),
     (["expand"], ["FLOW", "--help"]),
     ([], ["VERB", "--help"]),
+    (["expand", "dune", "--Re", "3", "--Re", "4"], ["--Re: given twice, with '3' and '4'"]),
+    (["expand", "vortex", "--slope_deg", "30", "--slope-deg", "31"], ["--slope-deg: given twice"]),
+    (["check", "vortex", "--tolerance", "0.1", "--tolerance", "0.2"], ["--tolerance: given twice"]),
     (["expand", "dune", "--json", "--latex"], ["--latex"]),
     (["flows", "film2"], ["film2", "dune"]),
     (["check", "dune", "/no/such/file"], ["/no/such/file", "stability dispersion"]),
@@ -222,6 +225,21 @@ def test_help_lists_the_parameters_of_the_flow_that_is_named():
     assert "asymptotics expand FLOW --help" in general
     assert "--Fr2 V" in vortex
     assert "--shields" not in vortex
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs a pseudo-terminal")
+@pytest.mark.parametrize("arguments", [["flows", "dune"], ["expand", "dune", "--regime", "shallow"]])
+def test_lines_are_no_wider_than_the_terminal(arguments):
+    import pty
+
+    near, far = pty.openpty()
+    command = [sys.executable, "-m", "asymptotics", *arguments]
+    subprocess.run(command, cwd=ROOT, env={**os.environ, "COLUMNS": "60"}, stdout=far, check=True)
+    os.close(far)
+    shown = os.read(near, 100_000).decode().replace("\r", "")
+    whole = program(*arguments).stdout
+    assert max(map(len, shown.splitlines())) <= 60 < max(map(len, whole.splitlines()))
+    assert shown.split() == whole.split()
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
