@@ -12,14 +12,17 @@ from functools import cache
 from math import inf
 from pathlib import Path
 from time import process_time
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from .errors import ModeLost, ParameterError
+from .output import Row
+from .record import Record
 from .relation import dispersion
 from .solver import DEGREES, Solver
 from .spectra import finite_rates, spectrum
+from .status import RESOLVED
 from .threads import one_thread
 from .tracking import follow, surface_mode
 
@@ -56,8 +59,8 @@ class Measurement:
     unknowns: int
 
 
-@dataclass(frozen=True)
-class Comparison:
+@dataclass(frozen=True, repr=False)
+class Comparison(Record):
     """All measurements of one problem. `failed` lists (method, setting) without a usable result."""
 
     flow: Any
@@ -65,6 +68,20 @@ class Comparison:
     reference: Reference
     measurements: tuple
     failed: tuple
+    dimension: ClassVar[str] = "measurement"
+
+    def rows(self) -> list[Row]:
+        return [{"method": one.method, "setting": one.setting, "growth_rate": one.sigma.real,
+                 "frequency": one.sigma.imag, "error": one.error, "reported": one.reported, "seconds": one.seconds,
+                 "unknowns": one.unknowns, "status": RESOLVED} for one in self.measurements]
+
+    def notes(self) -> list[str]:
+        known = self.reference
+        return [f"reference: sigma = {known.sigma:.15g}, {known.source}",
+                *(f"{method}, {setting}: no result" for method, setting in self.failed)]
+
+    def about(self) -> dict[str, Any]:
+        return {"k": self.k}
 
 
 @one_thread

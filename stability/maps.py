@@ -22,10 +22,10 @@ from .flows.base import check_flow, check_parameter
 from .journal import Journal
 from .neutral import check_parameter_name, critical_sweep
 from .optimum import k_max_sweep
-from .output import Row, header_of
+from .output import Row
 from .pool import GUARD, MOST_WORKERS, processes
 from .record import Record
-from .relation import dispersion
+from .relation import default_mode, dispersion
 from .solver import DEGREES, TOLERANCE, check_accuracy
 from .wellposed import outgrown
 
@@ -241,10 +241,18 @@ class Map(Record):
         return {**self.axes, **{name: self[name] for name in self.results}}
 
     def about(self) -> dict[str, Any]:
-        return {"quantity": self.quantity, "over": ", ".join(self.axes)}
+        about = {"quantity": self.quantity, "over": ", ".join(self.axes)}
+        return about if self.request.vary is None else {**about, "vary": self.request.vary}
 
-    def header(self) -> dict[str, Any]:
-        return header_of(self.flow, self.method, self.notes(), (*self.request.over, self.request.vary))
+    @property
+    def swept(self) -> tuple[str | None, ...]:
+        return (*self.request.over, self.request.vary)
+
+    @property
+    def settings(self) -> dict[str, Any]:  # type: ignore[override]
+        request = self.request
+        mode = {"mode": default_mode(self.flow)} if self.quantity == "growth_rate" else {}
+        return {**mode, "tolerance": float(request.tolerance), "max_degree": request.max_degree}
 
     def plot(self, ax: "Axes | None" = None, quantity: str | None = None) -> "Axes":
         """Draw a result (the first, by default) over one or two axes into the matplotlib Axes `ax`, or a new one."""
@@ -266,7 +274,8 @@ def parameter_map(flow: "Flow", over: "Mapping[str, ArrayLike]", quantity: str |
 
     "k_max" (the default) is the fastest growing wavenumber of the surface mode with its growth rate, "growth_rate"
     (the default with wavenumbers `k`, the innermost axis then) that of the mode that `dispersion` follows, "neutral"
-    the critical value of `vary`, sought from the value that the flow has. What fails says so in its status.
+    (the default with `vary`) the critical value of `vary`, sought from the value that the flow has. What
+    fails says so in its status.
 
     Work is done in this process, in `workers` processes of our own (a script then needs `if __name__ == "__main__":`
     around what it does, and cannot come from standard input), or on any `concurrent.futures.Executor`, where pieces
@@ -278,10 +287,14 @@ def parameter_map(flow: "Flow", over: "Mapping[str, ArrayLike]", quantity: str |
     >>> f"{found['k_max'][1, 0]:.7f}"
     '0.8492020'
     """
-    if quantity is None:
-        quantity = "k_max" if k is None else "growth_rate"
-    return carry_out(Request(flow, over, quantity, k, vary, tolerance, max_degree), executor=executor, workers=workers,
-                     journal=journal, report=report)
+    quantity = usual_quantity(k, vary) if quantity is None else quantity
+    request = Request(flow, over, quantity, k, vary, tolerance, max_degree)
+    return carry_out(request, executor=executor, workers=workers, journal=journal, report=report)
+
+
+def usual_quantity(k, vary):
+    """The quantity that is meant where none is named."""
+    return "neutral" if vary is not None else "k_max" if k is None else "growth_rate"
 
 
 def carry_out(request, *, executor=None, workers=1, journal=None, report=None):

@@ -55,7 +55,7 @@ def _attributes(record: Record) -> dict[str, Any]:
     header = record.header()
     return {"title": f"{type(record).__name__} of {record.flow.title}", **header.pop("parameters"),
             **{name: "\n".join(value) if name == "notes" else value for name, value in header.items()},
-            **record.about(), "scales": record.flow.scales, "convention": CONVENTION}
+            "scales": record.flow.scales, "convention": CONVENTION}
 
 
 def _plain(value: Any) -> Any:

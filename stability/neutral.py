@@ -7,7 +7,7 @@ real part of d rate / dk at k = 0, where the scaled equations are regular. `neut
 growth = 0 through the plane of k and the parameter by arclength, past its turning points.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, fields, replace
 from math import exp, log
@@ -65,11 +65,16 @@ class NeutralPoint(Record):
     error: float | None
     k_error: float | None
     status: str
+    settings: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
     dimension: ClassVar[str] = "flow"
 
     @property
     def bounded(self) -> str:
         return self.vary
+
+    @property
+    def swept(self) -> tuple[str | None, ...]:
+        return (self.vary,)
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Mark (k, value) in the matplotlib Axes `ax`, that of a `NeutralCurve` say, or in a new one; return it."""
@@ -100,11 +105,16 @@ class NeutralCurve(Record):
     vary: str
     points: tuple[NeutralPoint, ...]
     trace: np.ndarray = field(compare=False)
+    settings: Mapping[str, Any] = field(default_factory=dict, compare=False)
     dimension: ClassVar[str] = "point"
 
     @property
     def bounded(self) -> str:
         return self.vary
+
+    @property
+    def swept(self) -> tuple[str | None, ...]:
+        return (self.vary,)
 
     def plot(self, ax: "Axes | None" = None, quantity: str = "value") -> "Axes":
         """Draw value or phase_speed against k into the matplotlib Axes `ax`, or a new one; return it."""
@@ -117,6 +127,44 @@ class NeutralCurve(Record):
 
     def about(self) -> dict[str, Any]:
         return {"vary": self.vary}
+
+
+@dataclass(frozen=True, repr=False)
+class NeutralSweep(Record):
+    """The critical point of every flow of a sweep over the parameter `over` of `flow`."""
+
+    flow: Any
+    vary: str
+    over: str
+    points: tuple[NeutralPoint, ...]
+
+    @property
+    def dimension(self) -> str:
+        return self.over
+
+    @property
+    def settings(self) -> Mapping[str, Any]:  # type: ignore[override]
+        return self.points[0].settings
+
+    @property
+    def bounded(self) -> str:
+        return self.vary
+
+    @property
+    def swept(self) -> tuple[str | None, ...]:
+        return self.over, self.vary
+
+    def plot(self, ax: "Axes | None" = None, quantity: str = "value") -> "Axes":
+        """Draw value or k against the swept parameter into the matplotlib Axes `ax`, or a new one; return it."""
+        from . import plots
+
+        return plots.neutral_sweep(self, plots.axes_or_new(ax), quantity)
+
+    def rows(self) -> list[Row]:
+        return [{self.over: getattr(point.flow, self.over), **point.row()} for point in self.points]
+
+    def about(self) -> dict[str, Any]:
+        return {"vary": self.vary, "over": self.over}
 
 
 def critical(flow: "Flow", vary: str, *, long_wave: bool = False, tolerance: float = TOLERANCE,
@@ -143,6 +191,7 @@ def critical_sweep(flows: "Iterable[Flow]", vary: str, *, long_wave: bool = Fals
                    max_degree: int = DEGREES[-1]) -> Iterator[NeutralPoint]:
     """Yield `critical` of each flow in turn, starting from the value found last; what failed is in its status."""
     tolerance, max_degree = check_accuracy(tolerance, max_degree)
+    settings = {"tolerance": tolerance, "max_degree": max_degree, **({"long_wave": "yes"} if long_wave else {})}
     last = None
     for flow in flows:
         check_parameter_name(flow, vary)
@@ -151,7 +200,7 @@ def critical_sweep(flows: "Iterable[Flow]", vary: str, *, long_wave: bool = Fals
                 flow = replace(flow, **{vary: last.value})
         point = _critical(flow, vary, tolerance, max_degree, long_wave)
         last = point if point.value is not None else last
-        yield point
+        yield replace(point, settings=settings)
 
 
 def check_parameter_name(flow: "Flow", name: str) -> str:
@@ -280,7 +329,6 @@ def _long_wave_growth(plane, value):
     return value, slopes[-1], abs(slopes[-1] - slopes[-2]) + _LONG_ERROR * mode.error / solver.width(mode.k), mode
 
 
-@one_thread
 def neutral_curve(flow: "Flow", vary: str, k: "ArrayLike", *, tolerance: float = TOLERANCE,
                   max_degree: int = DEGREES[-1]) -> NeutralCurve:
     """Return the `NeutralCurve` through the critical point: at each wavenumber of k, all its values of `vary`.
@@ -288,6 +336,12 @@ def neutral_curve(flow: "Flow", vary: str, k: "ArrayLike", *, tolerance: float =
     A wavenumber that the curve does not reach keeps one point without numbers, whose status says so.
     Raises NotResolved where there is no critical point to start from.
     """
+    return joined(list(neutral_parts(flow, vary, k, tolerance=tolerance, max_degree=max_degree)))
+
+
+def neutral_parts(flow: "Flow", vary: str, k: "ArrayLike", *, tolerance: float = TOLERANCE,
+                  max_degree: int = DEGREES[-1]) -> Iterator[NeutralCurve]:
+    """Yield the curve of `neutral_curve` with the points of one wavenumber at a time: `joined` puts them together."""
     check_parameter_name(check_flow(flow), vary)
     wavenumbers = check_wavenumbers(k)
     tolerance, max_degree = check_accuracy(tolerance, max_degree)
@@ -295,14 +349,25 @@ def neutral_curve(flow: "Flow", vary: str, k: "ArrayLike", *, tolerance: float =
     if origin.value is None:
         raise NotResolved(origin.status)
     plane = Plane(flow, vary, tolerance, max_degree)
-    trace = _trace(plane.rough(_ROUGH), origin, min(wavenumbers), max(wavenumbers))
-    points = []
+    trace = one_thread(_trace)(plane.rough(_ROUGH), origin, min(wavenumbers), max(wavenumbers))
+    line = np.array([(point.k, point.value) for point in trace])
     for wavenumber in wavenumbers.tolist():
-        found = [_at_wavenumber(plane, a, b, wavenumber) for a, b in zip(trace, trace[1:], strict=False)
-                 if (a.k - wavenumber) * (b.k - wavenumber) <= 0 and b.k != wavenumber]
-        none = _nothing(flow, vary, wavenumber, f"the neutral curve does not reach k = {wavenumber:g}")
-        points += sorted(found, key=lambda point: point.value or 0.0) or [none]
-    return NeutralCurve(flow, vary, tuple(points), np.array([(point.k, point.value) for point in trace]))
+        yield NeutralCurve(flow, vary, _crossings(plane, trace, wavenumber), line,
+                           {"tolerance": tolerance, "max_degree": max_degree})
+
+
+def joined(parts: list[NeutralCurve]) -> NeutralCurve:
+    """Return the parts as one curve."""
+    return replace(parts[0], points=tuple(point for part in parts for point in part.points))
+
+
+@one_thread
+def _crossings(plane, trace, k):
+    """The neutral points at one wavenumber, by increasing value; one that says so where there are none."""
+    found = [_at_wavenumber(plane, a, b, k) for a, b in zip(trace, trace[1:], strict=False)
+             if (a.k - k) * (b.k - k) <= 0 and b.k != k]
+    none = _nothing(plane.flow, plane.vary, k, f"the neutral curve does not reach k = {k:g}")
+    return tuple(sorted(found, key=lambda point: point.value or 0.0) or [none])
 
 
 def _trace(plane, origin, low, high):

@@ -5,8 +5,8 @@ analytic slope in steps that its predictor can vouch for; a maximum lies whereve
 positive to negative. Every one found is refined, because the largest can change branch.
 """
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from math import exp, log
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -61,6 +61,7 @@ class Optimum(Record):
     flow: Any
     maxima: tuple[Maximum, ...]
     status: str
+    settings: Mapping[str, Any] = field(default_factory=dict, compare=False)
     dimension: ClassVar[str] = "flow"
     bounded: ClassVar[str] = "k_max"
 
@@ -125,6 +126,14 @@ class Optima(Record):
     @property
     def dimension(self) -> str:
         return self.over or "flow"
+
+    @property
+    def swept(self) -> tuple[str | None, ...]:
+        return (self.over,)
+
+    @property
+    def settings(self) -> Mapping[str, Any]:  # type: ignore[override]
+        return self.optima[0].settings
 
     def plot(self, ax: "Axes | None" = None, quantity: str = "k_max") -> "Axes":
         """Draw k_max or growth_rate against the swept parameter into the matplotlib Axes `ax`, or a new one; return it.
@@ -206,8 +215,16 @@ def check_search(search):
     return wavenumbers
 
 
+def check_surface_mode(flow):
+    """Raise a ParameterError where the flow has no surface mode: the maxima are those of its growth rate."""
+    if not flow.has_surface_mode():
+        raise ParameterError(f"{flow.name} has no slow surface mode, and k_max is that of the surface mode; ask for "
+                             "growth rates at given wavenumbers (dispersion), or for a neutral curve")
+
+
 @one_thread
 def _optimum(flow, search, tolerance, max_degree, assembly):
+    check_surface_mode(flow)
     assembly = assembly.serving(flow) if assembly else Assembly(flow)
     solver = Solver(flow, tolerance, max_degree, assembly)
     look = solver.rough(_ROUGH)
@@ -218,7 +235,8 @@ def _optimum(flow, search, tolerance, max_degree, assembly):
     except ModeLost as reason:
         maxima, status = [], str(reason)
     maxima = sorted((m for m in maxima if m.growth_rate > 0), key=lambda m: -m.growth_rate)
-    return Optimum(flow, tuple(maxima), _status(maxima, status, search)), assembly
+    settings = {"tolerance": tolerance, "max_degree": max_degree}
+    return Optimum(flow, tuple(maxima), _status(maxima, status, search), settings), assembly
 
 
 def _status(maxima, status, search):

@@ -21,15 +21,17 @@ from .status import RESOLVED
 Row = dict[str, Any]
 _LAYOUTS = ((10, 2), (8, 2), (6, 2), (6, 1), (4, 1))  # digits and spaces between columns of a table, widest first
 _ROUGH = "error", "reported", "seconds", "condition"  # endings of the columns that take two digits
+_FIRST = ("flow", "method", "version")  # comments above CSV
 _LABELS = 2  # columns that every block of a split table begins with
 _FEW = 4  # digits at which lists give way to their length
 _PREFIX = 100  # bytes of a file's name that its temporary file shows
 
 
-def header_of(flow: Any, method: str, notes: Sequence[str] = (), swept: Collection[str | None] = ()) -> dict[str, Any]:
-    """What belongs to a whole result: flow, parameters but the swept ones, method, version, and notes if any."""
+def header_of(flow: Any, method: str, about: dict[str, Any], notes: Sequence[str] = (),
+              swept: Collection[str | None] = ()) -> dict[str, Any]:
+    """What belongs to a whole result: flow, parameters but the swept ones, method, version, `about`, notes if any."""
     parameters = {item.name: getattr(flow, item.name) for item in fields(flow) if item.name not in swept}
-    header = {"flow": flow.name, "parameters": parameters, "method": method, "version": __version__}
+    header = {"flow": flow.name, "parameters": parameters, "method": method, "version": __version__, **about}
     return {**header, "notes": list(notes)} if notes else header
 
 
@@ -56,9 +58,10 @@ def _plain(value):
 
 def _csv(header, rows):
     text = io.StringIO()
-    for key in ("flow", "method", "version"):
+    for key in _FIRST:
         text.write(f"# {key}: {header[key]}\n")
-    for key, value in header["parameters"].items():
+    others = {key: value for key, value in header.items() if key not in (*_FIRST, "parameters", "notes")}
+    for key, value in {**header["parameters"], **others}.items():
         text.write(f"# {key}: {value}\n")
     writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
     writer.writeheader()

@@ -6,7 +6,7 @@ rate is predicted from the gradient, and old and new eigenvectors must be biorth
 """
 
 from dataclasses import dataclass, replace
-from math import exp, log
+from math import exp, isinf, log
 from typing import Any
 
 import numpy as np
@@ -49,6 +49,8 @@ class Plane:
     """Modes of `flow` at any wavenumber and any value of its parameter `vary`, to a relative `tolerance`."""
 
     def __init__(self, flow, vary, tolerance, max_degree):
+        if isinf(getattr(flow, vary)):
+            raise ParameterError(f"{flow.name}: {vary} = inf cannot be varied; start from a finite {vary}")
         self.flow, self.vary = flow, vary
         self.tolerance, self.max_degree = tolerance, max_degree
         long_waves = flow.has_surface_mode()

@@ -1,5 +1,7 @@
 """Figures of results, drawn without a display and ready for print."""
 
+from collections.abc import Sequence
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -7,12 +9,11 @@ import numpy as np
 from .eigenfunction import Eigenfunction
 from .errors import ParameterError
 from .mode import Mode
-from .neutral import NeutralCurve, NeutralPoint
+from .neutral import NeutralCurve, NeutralPoint, NeutralSweep
 from .optimum import Optima, Optimum
 from .relation import DispersionRelation
 from .sensitivity import Sensitivities
-from .spectra import Spectrum
-from .wellposed import WellPosedness
+from .spectra import Spectra, Spectrum
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,13 +31,13 @@ STYLE: dict[Any, Any] = {
 BLUE, RED, GREY = "#0b4f8a", "#c0392b", "#7f7f7f"
 
 DISPERSION = {"growth_rate": r"growth rate $\sigma_r$", "phase_speed": r"phase speed $c_r$"}  # axis labels
+SWEEP = {"value": "at zero growth", "k": "wavenumber $k$ (0: long waves)"}
 OPTIMA = {"k_max": "$k_{max}$", "growth_rate": r"growth rate at $k_{max}$"}
 NEUTRAL = {"value": "at zero growth", "phase_speed": "phase speed $c_r$"}
 
 
 def draw(result, path):
-    """Draw a result into the file `path`: a DispersionRelation, a list of Spectrum, Optima, a NeutralCurve, a Map,
-    Sensitivities, or a pair (name of the swept parameter, list of NeutralPoint)."""
+    """Draw the Record of a verb into the file `path`."""
     import matplotlib
     from matplotlib.figure import Figure
 
@@ -56,7 +57,7 @@ def draw(result, path):
 
 
 def _draw_panels(result, figure):
-    if isinstance(result, (list, Sensitivities)) or hasattr(result, "measurements"):
+    if isinstance(result, (Spectrum, Spectra, Sensitivities, NeutralPoint)) or hasattr(result, "measurements"):
         axis = figure.subplots()
     else:
         axes = figure.subplots(1, 2)
@@ -64,18 +65,20 @@ def _draw_panels(result, figure):
         _both(dispersion, result, axes, DISPERSION)
     elif isinstance(result, NeutralCurve):
         _both(neutral_curve, result, axes, NEUTRAL)
-    elif isinstance(result, list):
-        spectra(result, axis)
+    elif isinstance(result, NeutralSweep):
+        _both(neutral_sweep, result, axes, SWEEP)
+    elif isinstance(result, (Spectrum, Spectra)):
+        spectra(getattr(result, "spectra", [result]), axis)
+    elif isinstance(result, NeutralPoint):
+        neutral_point(result, axis)
     elif isinstance(result, Sensitivities):
         sensitivities(result, axis)
     elif hasattr(result, "measurements"):
         _comparison(result, axis)
     elif isinstance(result, Optima):
         _both(optima, result, axes, OPTIMA)
-    elif isinstance(result[0], WellPosedness):
-        _well_posedness(*result, *axes)
     else:
-        _neutral_points(*result, *axes)
+        _well_posedness(result.layers, result.growth, *axes)
 
 
 def axes_or_new(axes: "Axes | None") -> "Axes":
@@ -101,16 +104,14 @@ def _plain(result):
 def _caption(result):
     if isinstance(result, DispersionRelation):
         return f"{result.flow}, {result.mode} mode"
-    if isinstance(result, NeutralCurve):
-        return str(result.flow)
     if hasattr(result, "axes"):
         return result.title
     if isinstance(result, Sensitivities) or hasattr(result, "measurements"):
         return f"{result.flow}, k = {result.k:g}"
-    if isinstance(result, list) or isinstance(result, tuple) and isinstance(result[0], WellPosedness):
-        return str(result[0].flow)
-    name, first = (result.over, result.flow) if isinstance(result, Optima) else (result[0], result[1][0].flow)
-    return str(first).replace(f"{name}={getattr(first, name)}", f"{name} swept") if name else str(first)
+    text = str(result.flow)
+    for name in filter(None, result.swept):
+        text = text.replace(f"{name}={getattr(result.flow, name)}", f"{name} varies")
+    return text
 
 
 def _label(labels, quantity):
@@ -130,7 +131,7 @@ def dispersion(relation: DispersionRelation, axis: "Axes", quantity: str) -> "Ax
     return axis
 
 
-def spectra(found: list[Spectrum], axis: "Axes") -> "Axes":
+def spectra(found: Sequence[Spectrum], axis: "Axes") -> "Axes":
     """Growth rates against phase speeds, a colour for each spectrum."""
     for one in found:
         axis.plot(one.phase_speed, one.growth_rate, "o", markersize=4, label=f"$k$ = {one.k:g}")
@@ -155,16 +156,30 @@ def optima(found: Optima, axis: "Axes", quantity: str) -> "Axes":
     x = [getattr(optimum.flow, name) if name else 0.0 for optimum in found.optima]
     pairs = list(zip(x, found.optima, strict=True))
     others = [(value, getattr(one, field)) for value, optimum in pairs for one in optimum.maxima[1:]]
-    if others:
-        axis.plot(*zip(*others, strict=True), ".", color=RED, markersize=4, label="other local maxima")
-        axis.legend()
+    _against(axis, name, others, color=RED, linestyle="", label="other local maxima")
     best = [(value, getattr(optimum.maxima[0], field)) for value, optimum in pairs if optimum.maxima]
-    if best:
-        axis.plot(*zip(*best, strict=True), ".-", color=BLUE, markersize=4)
-    scale = "log" if len(x) > 1 and min(x) > 0 and _spans_decades(x) else "linear"
+    _against(axis, name, best, color=BLUE)
+    scale = _scale(x)
     axis.set(xlabel=f"${name}$" if name and len(name) < 3 else name or "", ylabel=label, xscale=scale,
              yscale="log" if best and scale == "log" else "linear")
     return axis
+
+
+def _against(axis, name, pairs, **style):
+    """A line with dots through (value of the swept parameter, y); y at infinity is a level."""
+    finite = [pair for pair in pairs if isfinite(pair[0])]
+    if finite:
+        axis.plot(*zip(*finite, strict=True), **{"marker": ".", "markersize": 4, **style})
+    for value, y in pairs:
+        if not isfinite(value):
+            axis.axhline(y, color=style["color"], linestyle="--", linewidth=0.8, label=f"{name} = inf")
+    if axis.get_legend_handles_labels()[0]:
+        axis.legend()
+
+
+def _scale(values):
+    finite = [value for value in values if isfinite(value)]
+    return "log" if len(finite) > 1 and min(finite) > 0 and _spans_decades(finite) else "linear"
 
 
 def mode(one: Mode, axis: "Axes") -> "Axes":
@@ -256,11 +271,12 @@ def neutral_point(point: NeutralPoint, axis: "Axes") -> "Axes":
     return axis
 
 
-def _neutral_points(name, points, left, right):
-    known = [point for point in points if point.value is not None]
-    x = [getattr(point.flow, name) if name else 0.0 for point in known]
-    scale = "log" if len(x) > 1 and min(x) > 0 and _spans_decades(x) else "linear"
-    left.plot(x, [point.value for point in known], ".-", color=BLUE, markersize=4)
-    right.plot(x, [point.k for point in known], ".-", color=BLUE, markersize=4)
-    left.set(xlabel=name or "", ylabel=f"{points[0].vary} at zero growth", xscale=scale)
-    right.set(xlabel=name or "", ylabel="wavenumber $k$ (0: long waves)", xscale=scale)
+def neutral_sweep(found: NeutralSweep, axis: "Axes", quantity: str) -> "Axes":
+    """The parameter at zero growth or the wavenumber there against the swept parameter."""
+    label, name = _label(SWEEP, quantity), found.over
+    x = [getattr(point.flow, name) for point in found.points]
+    known = [(value, getattr(point, quantity)) for value, point in zip(x, found.points, strict=True)
+             if point.value is not None]
+    _against(axis, name, known, color=BLUE)
+    axis.set(xlabel=name, ylabel=f"{found.vary} {label}" if quantity == "value" else label, xscale=_scale(x))
+    return axis

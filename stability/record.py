@@ -1,6 +1,7 @@
 """What every result can do: print itself as a short table, write itself to a file."""
 
 import os
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ class Record:
 
     flow: Any
     method: str = "collocation"
+    settings: Mapping[str, Any] = {}  # what the method was told, {name: text or number}
 
     @property
     def dimension(self) -> str:
@@ -27,6 +29,11 @@ class Record:
     def dimensions(self) -> tuple[str, ...]:
         """Names of all dimensions of the columns: those of a map are several, each with a column of its own."""
         return (self.dimension,)
+
+    @property
+    def swept(self) -> tuple[str | None, ...]:
+        """Names of the parameters that vary from row to row: no property of the whole."""
+        return ()
 
     @property
     def bounded(self) -> str:
@@ -50,8 +57,8 @@ class Record:
         return {}
 
     def header(self) -> dict[str, Any]:
-        """Return flow, parameters, method, version, and the notes if there are any."""
-        return header_of(self.flow, self.method, self.notes())
+        """Return flow, fixed parameters, method, version, what was asked for, settings, and notes if there are any."""
+        return header_of(self.flow, self.method, {**self.about(), **self.settings}, self.notes(), self.swept)
 
     def to_csv(self, path: Target) -> None:
         """Write the rows as CSV, flow and parameters as comments; raises ParameterError where that cannot be done."""

@@ -1,6 +1,6 @@
 """Dispersion relations sigma(k): the surface mode followed from its long-wave limit, or the most unstable mode."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -49,6 +49,7 @@ class DispersionRelation(Record):
     collisions: tuple[Collision, ...]
     asked: tuple[float, ...] = ()
     method: str = "collocation"
+    settings: Mapping[str, Any] = field(default_factory=dict, compare=False)
     dimension: ClassVar[str] = "k"
 
     @property
@@ -170,7 +171,8 @@ def dispersion_parts(flow: "Flow", k: "ArrayLike", mode: str | None = None, *, t
     portions, step = walk(Solver(flow, tolerance, max_degree), np.unique(wavenumbers)), one_thread(next)
     while portion := step(portions, None):
         found, lost, collisions = portion
-        yield DispersionRelation(flow, mode, tuple(found.values()), lost, tuple(collisions))
+        yield DispersionRelation(flow, mode, tuple(found.values()), lost, tuple(collisions),
+                                 settings={"tolerance": tolerance, "max_degree": max_degree})
 
 
 def joined(parts: list[DispersionRelation], asked: list[float]) -> DispersionRelation:

@@ -4,7 +4,8 @@ d rate / d p = y^H (dA/dp - rate dB/dp) x. The coefficients of the equations are
 step 1e-5), before anything cancels, so the result is good to 7 digits or more: enough for Newton.
 """
 
-from dataclasses import dataclass, fields, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
 from math import isinf, prod
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -50,6 +51,7 @@ class Sensitivities(Record):
     flow: Any
     mode: Mode
     slopes: tuple[Slope, ...]
+    settings: Mapping[str, Any] = field(default_factory=dict, compare=False)
     dimension: ClassVar[str] = "parameter"
     bounded: ClassVar[str] = "the derivative of sigma"
 

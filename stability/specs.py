@@ -1,6 +1,6 @@
 """Values given on the command line: a number, a list `a,b,c`, or a range `a:b:n` (log-spaced) or `a:b:n:lin`."""
 
-from math import isfinite
+from math import inf, isfinite
 
 import numpy as np
 
@@ -9,9 +9,13 @@ from .errors import ParameterError
 _MOST = 100_000
 
 
-def parse_spec(text, name, positive=True):
-    """Return the values of a SPEC as a float array (count,); raise a ParameterError that names `name`."""
-    values = _range(text, name) if ":" in text else np.array([_number(part, name) for part in text.split(",")])
+def parse_spec(text, name, positive=True, unbounded=False):
+    """Return the values of a SPEC as a float array (count,); raise a ParameterError that names `name`.
+
+    `unbounded` admits inf in a list.
+    """
+    values = _range(text, name) if ":" in text else \
+        np.array([_number(part, name, unbounded) for part in text.split(",")])
     if positive and not np.all(values > 0):
         raise ParameterError(f"{name}: values must be positive (got {min(values):g})")
     return values
@@ -43,12 +47,12 @@ def _range(text, name):
     return np.geomspace(start, stop, count)
 
 
-def _number(text, name):
+def _number(text, name, unbounded=False):
     try:
         value = float(text)
     except ValueError:
         value = None
-    if value is None or not isfinite(value):
+    if value is None or not (isfinite(value) or unbounded and value == inf):
         raise ParameterError(f"{name}: not a finite number: {text!r}; "
                              "give a number, a list a,b,c or a range a:b:n[:lin]")
     return value

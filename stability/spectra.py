@@ -7,6 +7,7 @@ continuity, become semisimple zeros of G. How many are finite follows from the s
 nothing is filtered by size.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -21,6 +22,7 @@ from .mode import Mode, require
 from .output import Row
 from .record import Record
 from .solver import DEGREES, TOLERANCE, Solver, check_accuracy
+from .status import INTERRUPTED
 from .threads import one_thread
 
 if TYPE_CHECKING:
@@ -45,6 +47,7 @@ class Spectrum(Record):
     flow: Any
     k: float
     modes: tuple[Mode, ...]
+    settings: Mapping[str, Any] = field(default_factory=dict, compare=False)
     dimension: ClassVar[str] = "mode"
 
     @property
@@ -97,6 +100,35 @@ class Spectrum(Record):
     def _summary(self) -> list[Row]:
         names = ("k", "growth_rate", "phase_speed", "error", "degree", "status")
         return [{name: getattr(mode, name) for name in names} for mode in self.modes]
+
+
+@dataclass(frozen=True, repr=False)
+class Spectra(Record):
+    """The spectra of a flow at several wavenumbers; those of the wavenumbers in `missing` were not computed."""
+
+    flow: Any
+    spectra: tuple[Spectrum, ...]
+    missing: tuple[float, ...] = ()
+    dimension: ClassVar[str] = "mode"
+
+    @property
+    def settings(self) -> Mapping[str, Any]:  # type: ignore[override]
+        return self.spectra[0].settings
+
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw growth rates against phase speeds, a colour for each wavenumber, into `ax` or new Axes; return them."""
+        from . import plots
+
+        return plots.spectra(self.spectra, plots.axes_or_new(ax))
+
+    def rows(self) -> list[Row]:
+        rows = [row for one in self.spectra for row in one.rows()]
+        return rows + [dict.fromkeys(rows[0]) | {"k": k, "status": INTERRUPTED} for k in self.missing]
+
+    def notes(self) -> list[str]:
+        from .wellposed import notes_on
+
+        return notes_on(list(self.spectra))
 
 
 def dense_degrees(solver, first, step=1):
@@ -175,12 +207,13 @@ def spectrum(flow: "Flow", k: float, modes: int = 10, *, tolerance: float = TOLE
     """
     strict = check_flag("strict", strict)
     k, modes = check_wavenumber(k), check_integer(modes, "modes", 1, MOST)
-    solver = Solver(check_flow(flow), *check_accuracy(tolerance, max_degree))
+    tolerance, max_degree = check_accuracy(tolerance, max_degree)
+    solver = Solver(check_flow(flow), tolerance, max_degree)
     found = leading_modes(solver, k, modes)
     if strict:
         for mode in found:
             require(mode)
-    return Spectrum(flow, k, tuple(found))
+    return Spectrum(flow, k, tuple(found), {"tolerance": tolerance, "max_degree": max_degree})
 
 
 def leading_modes(solver, k, count):

@@ -11,6 +11,7 @@ import sys
 import time
 
 import pytest
+from scipy.io import netcdf_file
 
 from stability import __version__, dispersion, flows
 from stability.cli import main
@@ -164,6 +165,14 @@ BAD = [
      "--tolerance: --method bvp-thesis does not use it"),
     (("dispersion", "vortex", "--k", "1", "--method", "bvp-thesis", "--delta", "0.01,0.02"),
      "--delta: one value at a time (got 2)"),
+    (("dispersion", "dune", "--k", "1", "-o", "x.png", "--plot", "./x.png"), "--plot: './x.png' is the file of -o too"),
+    (("dispersion", "dune", "--k", "1", "--csv", "-o", "x.json"), "-o: --csv contradicts the ending of 'x.json'"),
+    (("spectrum", "dune", "--k", "1", "--json", "-o", "x.nc"), "-o: --json contradicts the ending of 'x.nc'"),
+    (("kmax", "poiseuille"), "poiseuille has no slow surface mode, and k_max is that of the surface mode"),
+    (("kmax", "couette", "--method", "bvp"), "couette has no slow surface mode, and k_max is"),
+    (("critical", "dune", "--vary", "depth"), "dune: depth = inf cannot be varied; start from a finite depth"),
+    (("neutral", "dune", "--vary", "depth", "--over", "Re=1,2"), "dune: depth = inf cannot be varied"),
+    (("kmax", "dune", "--over", "Re=1,inf"), "--over Re: not a finite number: 'inf'"),
     (("flows", "vrtex"), "unknown flow 'vrtex' (did you mean 'vortex'?)"),
     (("dispersion", "vrtex", "--k", "1"), "unknown flow 'vrtex'"),
     (("dispersion", "dune", "--Rex", "3", "--k", "1"), "unknown option '--Rex'"),
@@ -227,8 +236,63 @@ def test_the_ending_of_a_file_gives_its_form(tmp_path, capsys):
     for name, start in (("a.csv", "# flow: vortex"), ("a.json", "{"), ("a.txt", "k  "), ("a", "k  ")):
         assert run(capsys, "dispersion", "vortex", "--k", "1", "-o", str(tmp_path / name))[0] == 0
         assert (tmp_path / name).read_text().startswith(start)
-    assert run(capsys, "dispersion", "vortex", "--k", "1", "--json", "-o", str(tmp_path / "a.csv"))[0] == 0
-    assert (tmp_path / "a.csv").read_text().startswith("{")
+    assert run(capsys, "dispersion", "vortex", "--k", "1", "--json", "-o", str(tmp_path / "a.txt"))[0] == 0
+    assert (tmp_path / "a.txt").read_text().startswith("{")
+
+
+NETCDF = {
+    "dispersion vortex --k 1,2": ("k", 2), "spectrum vortex --k 1 --modes 3": ("mode", 3),
+    "spectrum vortex --k 1,2 --modes 3": ("mode", 6), "kmax dune --over depth=2,inf": ("depth", 2),
+    "neutral film --vary Re --over We=0,1": ("We", 2), "neutral film --vary Re --k 0.1,0.2": ("point", 2),
+    "critical film --vary Re": ("flow", 1), "sensitivity vortex --k 1": ("parameter", 3),
+    "wellposed vortex --points 5": ("point", 5), "wellposed vortex --k 1,2": ("k", 2),
+}
+
+
+@pytest.mark.parametrize("question", NETCDF)
+def test_every_verb_writes_netcdf(tmp_path, capsys, question):
+    target, (dimension, length) = tmp_path / "x.nc", NETCDF[question]
+    assert run(capsys, *question.split(), "-o", str(target), "--quiet")[0] == 0
+    rows = json.loads(run(capsys, *question.split(), "--json", "--quiet")[1])["rows"]
+    with netcdf_file(target, mmap=False) as file:
+        assert file.dimensions[dimension] == length == len(rows)
+        name = next(name for name, value in rows[0].items() if isinstance(value, float))
+        assert file.variables[name][:].tolist() == [float(row[name]) for row in rows]
+
+
+FIXED = {"shields": 2.0, "mu1": 0.4, "b": 1.0, "depth": "inf", "fluid": "closed-form"}
+USUAL = {"tolerance": 1e-10, "max_degree": 512}
+PROVENANCE = {
+    "dispersion vortex --k 1": {"mode": "surface", **USUAL},
+    "dispersion vortex --k 1 --mode most-unstable --tolerance 1e-6 --max-degree 64": {
+        "mode": "most-unstable", "tolerance": 1e-6, "max_degree": 64},
+    "dispersion poiseuille --k 1": {"mode": "leading", **USUAL},
+    "dispersion vortex --k 1 --method bvp --tolerance 1e-6": {"method": "bvp", "tolerance": 1e-6, "max_degree": None},
+    "dispersion vortex --k 1 --method bvp-thesis": {"residual": 1e-3, "delta": 0.01, "tolerance": None},
+    "dispersion vortex --k 1 --method bvp-thesis --delta 0.02": {"residual": 1e-3, "delta": 0.02},
+    "kmax dune --over Re=1,2": {"parameters": FIXED, "over": "Re", **USUAL},
+    "kmax dune --method bvp-thesis --depth 5": {"residual": 1e-3, "delta": None},
+    "spectrum vortex --k 1,2 --modes 1 --max-degree 64": {"tolerance": 1e-10, "max_degree": 64},
+    "critical film --vary Re": {"parameters": {"slope_deg": 30.0, "We": 0.0}, "vary": "Re", "long_wave": None, **USUAL},
+    "critical film --vary Re --long-wave": {"long_wave": "yes"},
+    "neutral poiseuille --vary Re --k 1": {"parameters": {}, "vary": "Re", **USUAL},
+    "neutral film --vary Re --over We=1,2": {"parameters": {"slope_deg": 30.0}, "vary": "Re", "over": "We", **USUAL},
+    "sensitivity vortex --k 1 --tolerance 1e-8": {"k": 1.0, "mode": "surface", "tolerance": 1e-8, "max_degree": 512},
+}
+
+
+@pytest.mark.parametrize("question", PROVENANCE)
+def test_headers_say_how_a_result_came_about(tmp_path, capsys, question):
+    """In every form; None stands for what is not there."""
+    said = PROVENANCE[question]
+    header = json.loads(run(capsys, *question.split(), "--json", "--quiet")[1])
+    assert {name: header.get(name) for name in said} == said
+    lines = [line for line in run(capsys, *question.split(), "--csv", "--quiet")[1].splitlines() if line[0] == "#"]
+    comments = dict(line[2:].split(": ") for line in lines)
+    assert len(comments) == len(lines)
+    del header["rows"]
+    expected = {**header, **header.pop("parameters")}
+    assert comments == {name: str(value) for name, value in expected.items() if name not in ("notes", "parameters")}
 
 
 @pytest.mark.parametrize("name", ["a b \u00e9.csv", "\u6c99" * 83 + ".csv", "x" * 251 + ".csv", "a." + "\u6c99" * 80])
@@ -286,7 +350,10 @@ def test_a_failing_picture_does_not_take_the_numbers_with_it(tmp_path, capsys, m
 
 @pytest.mark.parametrize("ending", ["png", "pdf", "svg"])
 @pytest.mark.parametrize("question", [("dispersion", "dune", "--k", "0.1:3:5"), ("spectrum", "vortex", "--k", "1,2"),
-                                      ("kmax", "dune", "--over", "Re=1:100:3")])
+                                      ("kmax", "dune", "--over", "Re=1:100:3"),
+                                      ("kmax", "dune", "--over", "depth=2,20,inf"), ("kmax", "dune", "--depth", "inf"),
+                                      ("kmax", "dune", "--over", "depth=inf"), ("critical", "film", "--vary", "Re"),
+                                      ("neutral", "film", "--vary", "Re", "--over", "We=0,1")])
 def test_every_verb_draws(tmp_path, capsys, question, ending):
     picture = tmp_path / f"figure.{ending}"
     assert run(capsys, *question, "--plot", str(picture), "--quiet")[0] == 0
@@ -313,6 +380,7 @@ SWEEPS = [
     ("spectrum", "vortex", "--k", "1,2,3,4", "--modes", "1"),
     ("kmax", "dune", "--over", "Re=1,2,3,4"),
     ("neutral", "film", "--vary", "Re", "--over", "We=1,2,3,4"),
+    ("neutral", "film", "--vary", "Re", "--slope-deg", "45", "--k", "0.1,0.2,0.3,0.4"),
     ("wellposed", "vortex", "--k", "1,2,3,4"),
 ]
 

@@ -87,6 +87,26 @@ def test_neutral_values_are_those_of_critical():
     assert found["Re"][1] == pytest.approx(1.25, abs=1e-12)
     assert found["Re"][0] == pytest.approx(critical(flows.Film(slope_deg=30.0), "Re").value, abs=1e-11)
     assert found["k"].tolist() == [0, 0]
+    assert found.table == parameter_map(flows.Film(), {"slope_deg": [30.0, 45.0]}, vary="Re").table
+
+
+def test_the_header_says_what_was_mapped(tmp_path, capsys):
+    target = tmp_path / "x.json"
+    for words, said in ((("--vary", "Re"), {"quantity": "neutral", "vary": "Re", "parameters": {"We": 0.0}}),
+                        (("--k", "1", "--tolerance", "1e-6"),
+                         {"quantity": "growth_rate", "mode": "surface", "tolerance": 1e-6, "max_degree": 512,
+                          "parameters": {"Re": 10.0, "We": 0.0}})):
+        assert run(capsys, "map", "film", "--over", "slope_deg=30,45", *words, "-o", str(target))[0] == 0
+        header = json.loads(target.read_text())
+        assert {name: header[name] for name in said} == said
+
+
+def test_an_infinite_depth_is_a_depth_like_any_other(tmp_path, capsys):
+    target = tmp_path / "x.csv"
+    assert run(capsys, "map", "dune", "--over", "depth=5,inf", "-o", str(target))[0] == 0
+    rows = [line for line in target.read_text().splitlines() if not line.startswith("#")]
+    assert [row.split(",")[:2] for row in rows[1:]] == [["5.0", str(k_max(flows.Dune(depth=5.0)).k_max)],
+                                                        ["inf", str(k_max(flows.Dune()).k_max)]]
 
 
 def test_outgrown_and_inadmissible_points_say_so():
@@ -442,7 +462,12 @@ BAD = [
     (("--over", "Re=1,2", "--quantity", "growth_rate"), "k: quantity growth_rate needs wavenumbers"),
     (("--over", "Re=1,2", "--quantity", "k_max", "--k", "1"), "k: quantity k_max takes none, only growth_rate does"),
     (("--over", "Re=1,2", "--quantity", "neutral"), "vary: quantity neutral needs a parameter to solve for"),
-    (("--over", "Re=1,2", "--vary", "b"), "vary: quantity k_max takes none, only neutral does"),
+    (("--over", "Re=1,2", "--quantity", "k_max", "--vary", "b"), "vary: quantity k_max takes none, only neutral does"),
+    (("--over", "Re=1,2", "--vary", "b", "--k", "1"), "k: quantity neutral takes none, only growth_rate does"),
+    (("--over", "Re=1,inf"), "--over Re: not a finite number: 'inf'"),
+    (("--over", "depth=1:inf:3"), "--over depth: not a finite number: 'inf'"),
+    (("--over", "depth=-inf"), "--over depth: not a finite number: '-inf'"),
+    (("--over", "Re=1,2", "--json"), "-o: --json contradicts the ending of 'x.csv'"),
     (("--over", "Re=1,2", "--quantity", "neutral", "--vary", "Re"), "vary: Re is the parameter to solve for"),
     (("--over", "Re=1,2", "--quantity", "neutral", "--vary", "R"), "dune has no numeric parameter 'R'"),
     (("--over", "Re=1,2", "--k", "0,1"), "--k: values must be positive (got 0)"),

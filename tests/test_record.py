@@ -17,13 +17,19 @@ from stability import ParameterError, __version__, dispersion, flows, k_max, spe
 from stability.cli import main
 from stability.continuation import Continuation
 from stability.maps import parameter_map
-from stability.neutral import critical, neutral_curve
+from stability.neutral import NeutralPoint, NeutralSweep, critical, critical_sweep, neutral_curve
 from stability.optimum import Optima, k_max_sweep
 from stability.sensitivity import sensitivities
+from stability.spectra import Spectra
 from stability.wellposed import growth_with_degree, well_posedness
 
-BED = flows.Dune()
+BED, FILM = flows.Dune(), flows.Film()
 LOST = {"mode": "most-unstable", "max_degree": 14, "strict": False}
+
+
+def sensitivity():
+    relation = dispersion(BED, 1.0)
+    return replace(sensitivities(relation.modes[0]), settings={"mode": relation.mode, **relation.settings})
 
 
 def sweep():
@@ -42,7 +48,9 @@ RECORDS = {
     "neutral": lambda: neutral_curve(flows.Poiseuille(), "Re", [1.0, 1.2]),
     "critical": lambda: critical(flows.Film(slope_deg=45.0), "Re"),
     "no critical": lambda: critical(flows.Vortex(), "slope_deg", strict=False),
-    "sensitivity": lambda: sensitivities(dispersion(BED, 1.0).modes[0]),
+    "sensitivity": sensitivity,
+    "neutral sweep": lambda: NeutralSweep(FILM, "Re", "We", tuple(critical_sweep([FILM, replace(FILM, We=1)], "Re"))),
+    "spectra": lambda: Spectra(flows.Vortex(), tuple(spectrum(flows.Vortex(), k, 2) for k in (1.0, 2.0))),
 }
 COMMANDS = {
     "dispersion": "dispersion dune --k 1,0.01,3",
@@ -55,6 +63,10 @@ COMMANDS = {
     "sweep": "kmax dune --over Re=10,1",
     "neutral": "neutral poiseuille --vary Re --k 1,1.2",
     "sensitivity": "sensitivity dune --k 1",
+    "critical": "critical film --slope-deg 45 --vary Re",
+    "no critical": "critical vortex --vary slope_deg",
+    "neutral sweep": "neutral film --vary Re --over We=0,1",
+    "spectra": "spectrum vortex --k 1,2 --modes 2",
 }
 
 
@@ -203,6 +215,21 @@ def test_a_neutral_point_is_marked_on_its_curve(record):
     assert (axis.get_xlabel(), axis.get_ylabel()) == before
     (x,), (y,) = axis.lines[-1].get_data()
     assert (x, y) == (point.k, point.value)
+
+
+def test_what_belongs_to_infinity_is_a_level_beside_the_line():
+    beds = [replace(BED, depth=depth) for depth in (2.0, np.inf, 20.0)]
+    points = tuple(NeutralPoint(bed, "Re", 0.2, value, 0.1, 0.0, 0.0, "resolved")
+                   for bed, value in zip(beds, (1.0, 3.0, 2.0), strict=True))
+    for found, levels in ((NeutralSweep(BED, "Re", "depth", points), [3.0]),
+                          (NeutralSweep(BED, "Re", "depth", points[::2]), []),
+                          (NeutralSweep(BED, "Re", "depth", points[1:2]), [3.0]),
+                          (Optima(BED, "depth", tuple(k_max_sweep(beds))), [k_max(BED).k_max])):
+        axis = found.plot(Figure().subplots())
+        lines = [line for line in axis.lines if len(line.get_xdata()) and list(line.get_xdata()) != [0, 1]]
+        assert [line.get_ydata()[0] for line in axis.lines if list(line.get_xdata()) == [0, 1]] == levels
+        assert all(np.isfinite(line.get_xdata()).all() for line in lines)
+        assert bool(axis.get_legend()) == bool(levels)
 
 
 @pytest.mark.parametrize("k", [1.0, [1.0], (1,), np.array([1.0]), np.float64(1.0)])

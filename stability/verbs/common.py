@@ -1,6 +1,7 @@
 """What the verbs share: flows and their flags, common options, and the report of a result."""
 
 import argparse
+import os
 import sys
 from dataclasses import fields, replace
 from difflib import get_close_matches
@@ -9,7 +10,7 @@ from pathlib import Path
 from ..errors import ParameterError
 from ..flows import FLOWS
 from ..flows.base import allowed
-from ..output import check_writable, header_of, render, terminal_width, whole_file, write
+from ..output import check_writable, render, terminal_width, whole_file, write
 from ..solver import DEGREES, TOLERANCE, check_accuracy
 from ..specs import parse_spec
 from ..status import INTERRUPTED, is_settled
@@ -17,7 +18,7 @@ from .progress import Bar
 
 SPEC = "a number, a list a,b,c, or a range a:b:n (log-spaced) or a:b:n:lin"
 INTERRUPTED_STATUS = 130  # of the command
-_FORMS = {".csv": "csv", ".json": "json"}  # that the ending of a file stands for
+FORMS = {".csv": "csv", ".json": "json", ".nc": "netcdf"}  # that the ending of a file stands for
 _PLOTS = (".png", ".pdf", ".svg")
 _NUMBER = "V"  # metavar of a numeric parameter of a flow
 _JOIN = "join values with commas"
@@ -35,7 +36,7 @@ def add_verb(verbs, name, run, summary, example, *options):
     form.add_argument("--csv", dest="form", action="store_const", const="csv", help="comma-separated values")
     form.add_argument("--json", dest="form", action="store_const", const="json", help="JSON")
     verb.add_argument("-o", "--output", metavar="FILE",
-                      help="write there instead of standard output; .csv and .json in that form")
+                      help="write there instead of standard output; .csv, .json and .nc (netCDF) in that form")
     verb.add_argument("--plot", metavar="FILE", help="draw the result: .png, .pdf or .svg")
     verb.add_argument("--quiet", action="store_true", help="no progress and no warnings on standard error")
     verb.add_argument("-h", "--help", action=_Help, help="show this help and exit")
@@ -74,7 +75,7 @@ class Once(argparse.Action):
         if self.metavar == _NUMBER:
             sweep = "--over" if "--over" in parser.format_usage() else "stability map --over"
             return f"sweep it with: {sweep} {self.dest.partition(' ')[2]}={','.join(values)}"
-        return _REMEDIES.get(self.metavar, "give it once")
+        return _REMEDIES.get(str(self.metavar), "give it once")
 
 
 def _add_parameters(verb):
@@ -143,7 +144,8 @@ def swept_values(text, flow):
     if name not in known:
         raise ParameterError(f"--over: {flow.name} has no parameter {name!r}{_nearest(name, known)}; "
                              f"it has {', '.join(known)}")
-    return name, parse_spec(spec, f"--over {name}", False).tolist()
+    (item,) = (item for item in fields(flow) if item.name == name)
+    return name, parse_spec(spec, f"--over {name}", False, item.metadata["unbounded"]).tolist()
 
 
 def options_of(arguments):
@@ -151,24 +153,31 @@ def options_of(arguments):
     return {"tolerance": tolerance, "max_degree": max_degree}
 
 
-def report(arguments, flow, compute, swept=()):
-    """Check where output goes, compute, write it; return the exit status.
-
-    The header leaves out the parameters that are `swept`.
-    """
-    check_files(arguments)
-    rows, result, notes = compute()
+def report(arguments, compute):
+    """Check where output goes, compute a Record, write it; return the exit status."""
+    form = check_files(arguments)
+    result = compute()
+    rows, header = result.rows(), result.header()
     missing = [row for row in rows if row["status"] == INTERRUPTED]
     failed = [row for row in rows if not is_settled(row["status"]) and row["status"] != INTERRUPTED]
     if not arguments.quiet:
-        for note in notes:
+        for note in header.get("notes", ()):
             print(f"stability: {note}", file=sys.stderr)
         if failed:
             print(f"stability: {len(failed)} of {len(rows)} rows are not resolved: see status", file=sys.stderr)
         if missing:
             print(f"stability: interrupted: {len(missing)} of {len(rows)} rows are not computed", file=sys.stderr)
-    header = header_of(flow, getattr(arguments, "method", "collocation"), notes, swept)
-    _deliver(arguments, header, rows, result)
+    if form == "netcdf":
+        from ..netcdf import encode  # scipy.io is slow to import
+
+        content = encode(result)
+    else:
+        content = render(form, header, rows, None if arguments.output else terminal_width()).encode()
+    try:
+        _deliver(arguments.output, content)
+    except ParameterError:  # the results then go where they can be read, as text
+        write(render("csv", header, rows) if form == "netcdf" else content.decode(), None)
+        raise
     if arguments.plot:
         from ..plots import draw  # matplotlib takes longer to import than most results to compute
 
@@ -178,32 +187,35 @@ def report(arguments, flow, compute, swept=()):
 
 
 def check_files(arguments):
-    """Before the work, not after it: can its results be written?"""
+    """Before the work, not after it: can its results be written? Return in which form."""
     if arguments.output:
         check_writable(arguments.output, "-o")
     if arguments.plot:
         if not arguments.plot.endswith(_PLOTS):
             raise ParameterError(f"--plot: the file must end in {', '.join(_PLOTS)} (got {arguments.plot!r})")
         check_writable(arguments.plot, "--plot")
+        if arguments.output and os.path.realpath(arguments.output) == os.path.realpath(arguments.plot):
+            raise ParameterError(f"--plot: {arguments.plot!r} is the file of -o too; give each its own")
+    return form_of(arguments)
 
 
-def _deliver(arguments, header, rows, result):
-    """Write the result to the file of -o, or to standard output: there too if the file fails after all."""
-    if arguments.form == "netcdf":
-        with whole_file(arguments.output, "-o") as temporary:
-            result.to_netcdf(temporary)
+def form_of(arguments):
+    """The form asked for, or the one that the ending of the file stands for."""
+    ending = Path(arguments.output or "").suffix
+    form = FORMS.get(ending, arguments.form)
+    if arguments.form not in ("table", form):
+        raise ParameterError(f"-o: --{arguments.form} contradicts the ending of {arguments.output!r}; leave it out, "
+                             "or end the file otherwise")
+    return form
+
+
+def _deliver(output, content):
+    """Write the result to the file of -o, or to standard output."""
+    if output is None:
+        write(content.decode(), None)
         return
-    if arguments.output is None:
-        write(render(arguments.form, header, rows, terminal_width()), None)
-        return
-    ending = Path(arguments.output).suffix
-    text = render(_FORMS.get(ending, arguments.form) if arguments.form == "table" else arguments.form, header, rows)
-    try:
-        with whole_file(arguments.output, "-o") as temporary:
-            write(text, temporary)
-    except ParameterError:
-        write(text, None)
-        raise
+    with whole_file(output, "-o") as temporary:
+        temporary.write_bytes(content)
 
 
 def collect(arguments, results, total, rest, size=lambda result: 1):

@@ -1,7 +1,6 @@
 """stability compare: all methods on one eigenvalue, their errors and times."""
 
 from ..specs import parse_one
-from ..status import RESOLVED
 from .common import add_verb, flow_of, report
 from .progress import Bar
 
@@ -24,18 +23,8 @@ def _run(arguments):
 
         bar = Bar(arguments.quiet)
         try:
-            found = compare(flow, k, report=bar)
+            return compare(flow, k, report=bar)
         finally:
             bar.clear()
-        known = found.reference
-        notes = [f"reference: sigma = {known.sigma:.15g}, {known.source}",
-                 *(f"{method}, {setting}: no result" for method, setting in found.failed)]
-        return [_row(one) for one in found.measurements], found, notes
 
-    return report(arguments, flow, compute)
-
-
-def _row(one):
-    return {"method": one.method, "setting": one.setting, "growth_rate": one.sigma.real, "frequency": one.sigma.imag,
-            "error": one.error, "reported": one.reported, "seconds": one.seconds, "unknowns": one.unknowns,
-            "status": RESOLVED}
+    return report(arguments, compute)

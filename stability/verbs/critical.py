@@ -25,7 +25,6 @@ def _run(arguments):
     vary = check_parameter_name(flow, arguments.vary.replace("-", "_"))
 
     def compute():
-        point = critical(flow, vary, long_wave=arguments.long_wave, strict=False, **options)
-        return point.rows(), (None, [point]), []
+        return critical(flow, vary, long_wave=arguments.long_wave, strict=False, **options)
 
-    return report(arguments, flow, compute)
+    return report(arguments, compute)

@@ -7,7 +7,7 @@ from ..relation import MODES, DispersionRelation, default_mode, dispersion_parts
 from ..specs import parse_spec
 from ..status import INTERRUPTED
 from .common import accuracy_options, add_verb, collect, flow_of, k_option, options_of, report
-from .methods import method_of, method_options
+from .methods import method_of, method_options, settings_of
 
 
 def add(verbs):
@@ -36,10 +36,10 @@ def _run(arguments):
             dispersion_parts(flow, wavenumbers, arguments.mode, **options)
         missing = DispersionRelation(flow, arguments.mode, (), dict.fromkeys(wavenumbers.tolist(), INTERRUPTED), ())
         found = collect(arguments, parts, len(wavenumbers), lambda done: [missing], lambda part: len(part.modes))
-        relation = replace(joined(found, wavenumbers.tolist()), method=arguments.method)
-        return relation.rows(), relation, relation.notes()
+        return replace(joined(found, wavenumbers.tolist()), method=arguments.method,
+                       settings=settings_of(bvp, options))
 
-    return report(arguments, flow, compute)
+    return report(arguments, compute)
 
 
 def _continued(flow, wavenumbers, **bvp):

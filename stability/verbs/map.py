@@ -7,12 +7,14 @@ from ..checks import check_integer
 from ..errors import ParameterError
 from ..specs import parse_spec
 from .common import (
+    FORMS,
     INTERRUPTED_STATUS,
     SPEC,
     accuracy_options,
     add_verb,
     check_files,
     flow_of,
+    form_of,
     options_of,
     report,
     swept_values,
@@ -20,7 +22,6 @@ from .common import (
 from .critical import vary_option
 from .progress import Bar
 
-_FORMS = {".csv": "csv", ".json": "json", ".nc": "netcdf"}
 _DRAWN_AXES = 2
 
 
@@ -46,13 +47,12 @@ def _run(arguments):
 
     request = _request(arguments)
     workers = cores() if arguments.workers is None else check_integer(arguments.workers, "--workers", 1, MOST_WORKERS)
-    arguments.form = _form(arguments)
-    _check_files(arguments, request)
+    _check_output(arguments, request)
     journal = Path(f"{arguments.output}.partial")
     bar = Bar(arguments.quiet)
     try:
         found = carry_out(request, workers=workers, journal=journal, report=bar)
-        status = report(arguments, request.flow, lambda: (found.rows(), found, []), (*request.over, request.vary))
+        status = report(arguments, lambda: found)
     except KeyboardInterrupt:
         bar.clear()
         print(f"stability: interrupted: {bar.done} of {request.size} points are kept in {str(journal)!r}; "
@@ -65,7 +65,7 @@ def _run(arguments):
 
 
 def _request(arguments):
-    from ..maps import Request
+    from ..maps import Request, usual_quantity
 
     flow, options = flow_of(arguments), options_of(arguments)
     if not arguments.over:
@@ -78,24 +78,15 @@ def _request(arguments):
         over[name] = values
     k = None if arguments.k is None else parse_spec(arguments.k, "--k")
     vary = arguments.vary and arguments.vary.replace("-", "_")
-    quantity = arguments.quantity or ("k_max" if k is None else "growth_rate")
-    return Request(flow, over, quantity, k, vary, **options)
+    return Request(flow, over, arguments.quantity or usual_quantity(k, vary), k, vary, **options)
 
 
-def _form(arguments):
-    """The form asked for, or the one that the ending of the file stands for."""
+def _check_output(arguments, request):
     if arguments.output is None:
         raise ParameterError("-o FILE is needed, .csv, .json or .nc: a map is kept beside it while it is computed")
-    if arguments.form != "table":
-        return arguments.form
-    ending = Path(arguments.output).suffix
-    if ending not in _FORMS:
-        raise ParameterError(f"-o: the file must end in {', '.join(_FORMS)}, or add --csv or --json "
+    if form_of(arguments) == "table":
+        raise ParameterError(f"-o: the file must end in {', '.join(FORMS)}, or add --csv or --json "
                              f"(got {arguments.output!r})")
-    return _FORMS[ending]
-
-
-def _check_files(arguments, request):
     check_files(arguments)
     if arguments.plot and len(request.axes) > _DRAWN_AXES:
         raise ParameterError(f"--plot: draws maps over one or two axes (this one has {', '.join(request.axes)})")

@@ -16,6 +16,16 @@ def method_options(verb):
                       help="pressure on the free surface of vortex with bvp-thesis, default 0.01")
 
 
+def settings_of(bvp, options=None):
+    """What the method of `method_of` is told, for the header of its results; `options` are those of collocation."""
+    if bvp is None:
+        return options
+    if "setting" not in bvp:
+        return bvp
+    delta = getattr(bvp["setting"](1.0), "delta", None)
+    return {"residual": bvp["residual"]} | ({} if delta is None else {"delta": delta})
+
+
 def method_of(arguments, flow, tolerance):
     """Arguments for `stability.continuation`, or None for collocation."""
     if arguments.method not in METHODS:

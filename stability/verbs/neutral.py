@@ -34,7 +34,7 @@ def _run(arguments):
 
 
 def _over(arguments, flow, vary, options):
-    from ..neutral import NeutralPoint, critical_sweep
+    from ..neutral import NeutralPoint, NeutralSweep, critical_sweep
 
     name, sweep = sweep_of(arguments, flow)
     if name == vary:
@@ -44,18 +44,23 @@ def _over(arguments, flow, vary, options):
         found = collect(arguments, critical_sweep(sweep, vary, long_wave=arguments.long_wave, **options), len(sweep),
                         lambda done: [NeutralPoint(one, vary, None, None, None, None, None, INTERRUPTED)
                                       for one in sweep[done:]])
-        return [{name: getattr(point.flow, name), **point.row()} for point in found], (name, found), []
+        return NeutralSweep(flow, vary, name, tuple(found))
 
-    return report(arguments, flow, compute)
+    return report(arguments, compute)
 
 
 def _curve(arguments, flow, vary, options):
-    from ..neutral import neutral_curve
+    from ..neutral import NeutralCurve, NeutralPoint, joined, neutral_parts
 
     wavenumbers = parse_spec(arguments.k, "--k")
 
     def compute():
-        curve = neutral_curve(flow, vary, wavenumbers, **options)
-        return curve.rows(), curve, []
+        def rest(done):
+            points = (NeutralPoint(flow, vary, k, None, None, None, None, INTERRUPTED)
+                      for k in wavenumbers[done:].tolist())
+            return [NeutralCurve(flow, vary, tuple(points), wavenumbers[:0])]
 
-    return report(arguments, flow, compute)
+        parts = neutral_parts(flow, vary, wavenumbers, **options)
+        return joined(collect(arguments, parts, len(wavenumbers), rest))
+
+    return report(arguments, compute)

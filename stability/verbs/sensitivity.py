@@ -1,5 +1,7 @@
 """stability sensitivity: how growth rate and phase speed change with every parameter."""
 
+from dataclasses import replace
+
 from ..errors import ModeLost, ParameterError
 from ..relation import MODES, default_mode, dispersion
 from ..specs import parse_one
@@ -35,7 +37,6 @@ def _run(arguments):
         relation = dispersion(flow, k, mode, strict=False, **options)
         for reason in relation.lost.values():
             raise ModeLost(reason)
-        found = sensitivities(relation.modes[0])
-        return found.rows(), found, relation.notes()
+        return replace(sensitivities(relation.modes[0]), settings={"mode": mode, **options})
 
-    return report(arguments, flow, compute)
+    return report(arguments, compute)

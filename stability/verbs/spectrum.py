@@ -2,9 +2,7 @@
 
 from ..checks import check_integer
 from ..specs import parse_spec
-from ..spectra import MOST, spectrum
-from ..status import INTERRUPTED
-from ..wellposed import notes_on
+from ..spectra import MOST, Spectra, spectrum
 from .common import accuracy_options, add_verb, collect, flow_of, k_option, options_of, report
 
 
@@ -26,8 +24,7 @@ def _run(arguments):
     def compute():
         spectra = (spectrum(flow, k, count, strict=False, **options) for k in wavenumbers.tolist())
         found = collect(arguments, spectra, len(wavenumbers), lambda done: [])
-        rows = [row for one in found for row in one.rows()]
-        rows += [dict.fromkeys(rows[0]) | {"k": k, "status": INTERRUPTED} for k in wavenumbers.tolist()[len(found):]]
-        return rows, found, notes_on(found)
+        missing = wavenumbers.tolist()[len(found):]
+        return Spectra(flow, tuple(found), tuple(missing)) if len(wavenumbers) > 1 else found[0]
 
-    return report(arguments, flow, compute)
+    return report(arguments, compute)

@@ -1,9 +1,14 @@
 """stability wellposed: where a flow's own equations are ill posed, and how its fastest modes grow with k."""
 
+from dataclasses import dataclass
+from typing import Any
+
 from ..checks import check_integer
+from ..output import Row
+from ..record import Record
 from ..specs import parse_spec
 from ..status import INTERRUPTED, RESOLVED
-from ..wellposed import growth_with_degree, well_posedness
+from ..wellposed import WellPosedness, growth_with_degree, well_posedness
 from .common import add_verb, collect, flow_of, report
 
 _POINTS = "21"
@@ -32,15 +37,34 @@ def _run(arguments):
 
     def compute():
         layers = well_posedness(flow)
-        notes = [f"{flow}: {strip}" for strip in layers.strips]
         growth = ()
         if wavenumbers is not None or arguments.plot:
             growth = _growth(arguments, flow, parse_spec(_WAVENUMBERS, "") if wavenumbers is None else wavenumbers)
         rows = _layer_rows(well_posedness(flow, count)) if wavenumbers is None else \
             _growth_rows(growth, sorted(set(wavenumbers.tolist())))
-        return rows, (layers, growth), notes
+        return _Answer(flow, layers, growth, tuple(rows))
 
-    return report(arguments, flow, compute)
+    return report(arguments, compute)
+
+
+@dataclass(frozen=True, repr=False)
+class _Answer(Record):
+    """The rows that are asked for, and all that the figure shows."""
+
+    flow: Any
+    layers: WellPosedness
+    growth: tuple
+    table: tuple[Row, ...]
+
+    @property
+    def dimension(self):
+        return "k" if "k" in self.table[0] else "point"
+
+    def rows(self):
+        return list(self.table)
+
+    def notes(self):
+        return [f"{self.flow}: {strip}" for strip in self.layers.strips]
 
 
 def _growth(arguments, flow, wavenumbers):
