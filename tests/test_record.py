@@ -104,6 +104,11 @@ def test_netcdf_holds_every_number_of_the_rows(tmp_path, record, name):
         for parameter, value in one.header()["parameters"].items():
             stored = getattr(file, parameter)
             assert (stored.decode() if isinstance(value, str) else float(stored)) == value
+        assert not any(hasattr(file, name) for name in one.swept if name)
+        for setting, value in one.settings.items():
+            stored = getattr(file, {"mode": "mode_followed"}.get(setting, setting))
+            assert (stored.decode() if isinstance(value, str) else float(stored)) == value
+        assert {"tolerance", "max_degree"} <= one.settings.keys()
         for column in one.rows()[0].keys() - {"maxima"}:
             variable = file.variables[column]
             assert variable.long_name
