@@ -7,7 +7,21 @@
 
 __version__ = "0.1.0"
 
-from .flows import expand
-from .series import Expansion
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .flows import expand
+    from .series import Expansion
 
 __all__ = ["Expansion", "expand"]
+
+_LATER = {"Expansion": "series", "expand": "flows", "flows": "flows"}
+
+
+def __getattr__(name: str) -> Any:
+    """Import what is asked for: the command begins at once, and can be interrupted while it imports."""
+    if name not in _LATER:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    module = import_module(f".{_LATER[name]}", __name__)
+    return module if name == "flows" else getattr(module, name)

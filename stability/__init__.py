@@ -11,17 +11,17 @@ __version__ = "0.1.0"
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from . import flows
 from .errors import ModeLost, NotResolved, ParameterError, StabilityError
-from .mode import Mode
-from .optimum import Optimum, k_max
-from .relation import DispersionRelation, dispersion
-from .spectra import Spectrum, spectrum
 
 if TYPE_CHECKING:
+    from . import flows
     from .maps import parameter_map
+    from .mode import Mode
     from .neutral import critical, neutral_curve
+    from .optimum import Optimum, k_max
+    from .relation import DispersionRelation, dispersion
     from .sensitivity import sensitivities
+    from .spectra import Spectrum, spectrum
 
 __all__ = [
     "DispersionRelation",
@@ -42,15 +42,20 @@ __all__ = [
     "spectrum",
 ]
 
-_LATER = {"critical": "neutral", "neutral_curve": "neutral", "parameter_map": "maps", "sensitivities": "sensitivity"}
+_LATER = {
+    "DispersionRelation": "relation", "Mode": "mode", "Optimum": "optimum", "Spectrum": "spectra",
+    "critical": "neutral", "dispersion": "relation", "flows": "flows", "k_max": "optimum", "neutral_curve": "neutral",
+    "parameter_map": "maps", "sensitivities": "sensitivity", "spectrum": "spectra",
+}
 
 
 def __getattr__(name: str) -> Any:
-    """Import what most uses do without when it is asked for."""
+    """Import what is asked for: the commands begin at once, and can be interrupted while they import."""
     if name not in _LATER:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f".{_LATER[name]}", __name__), name)
+    module = import_module(f".{_LATER[name]}", __name__)
+    return module if name == "flows" else getattr(module, name)
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_LATER})
+    return sorted({*globals(), *__all__})

@@ -9,19 +9,12 @@ import sys
 
 from . import __version__
 from .errors import ParameterError, StabilityError
-from .verbs import VERBS
-from .verbs.common import Once, nearest_flag
 
 
 def main(argv=None):
     """Run the command line; return the exit status."""
     try:
-        arguments, unknown = _parser().parse_known_args(argv)
-        if unknown:
-            kind = "option" if unknown[0].startswith("-") else "argument"
-            raise ParameterError(f"unknown {kind} {unknown[0]!r}{nearest_flag(arguments, unknown[0])}; "
-                                 "see --help, and for parameters: stability flows FLOW")
-        return arguments.run(arguments)
+        return _run(argv)
     except ParameterError as reason:
         return _fail(reason, 2)
     except StabilityError as reason:
@@ -36,6 +29,17 @@ def main(argv=None):
         return _fail("interrupted", 130)
 
 
+def _run(argv):
+    from .verbs.common import nearest_flag  # half of the time of a short command: Ctrl-C is heard meanwhile
+
+    arguments, unknown = _parser().parse_known_args(argv)
+    if unknown:
+        kind = "option" if unknown[0].startswith("-") else "argument"
+        raise ParameterError(f"unknown {kind} {unknown[0]!r}{nearest_flag(arguments, unknown[0])}; "
+                             "see --help, and for parameters: stability flows FLOW")
+    return arguments.run(arguments)
+
+
 def _fail(reason, status):
     print(f"stability: {reason}", file=sys.stderr)
     return status
@@ -45,6 +49,8 @@ class _Parser(argparse.ArgumentParser):
     """Errors as exceptions; no value is given twice; examples in one line, to be copied."""
 
     def __init__(self, **options):
+        from .verbs.common import Once
+
         super().__init__(formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False, **options)
         for action in (None, "store"):
             self.register("action", action, Once)
@@ -59,6 +65,8 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _parser():
+    from .verbs import VERBS
+
     parser = _Parser(prog="stability", description="Linear stability of granular and viscous shear flows.",
                      epilog="example: stability dispersion dune --shields 2 --k 1e-2:10:50")
     parser.add_argument("--version", action="version", version=f"stability {__version__}")

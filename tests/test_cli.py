@@ -441,6 +441,24 @@ def test_ctrl_c_stops_a_sweep_at_once():
     assert {line.split()[-1] for line in out.splitlines()[1:]} <= {"resolved", "interrupted"}  # what was done is kept
 
 
+@pytest.mark.parametrize("program", ["stability", "asymptotics"])
+def test_ctrl_c_while_importing_is_one_line(program):
+    """As if it came with the first heavy package."""
+    code = f"""
+import sys
+class Interrupt:
+    def find_spec(name, path=None, target=None):
+        if name in ("numpy", "sympy"):
+            raise KeyboardInterrupt
+sys.meta_path.insert(0, Interrupt)
+sys.argv = ["{program}", "flows"]
+from {program}.cli import main
+sys.exit(main())
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", f"{program}: interrupted\n")
+
+
 def test_light_verbs_import_no_heavy_packages():
     """Beyond what scipy.linalg imports itself: in older versions scipy.sparse.linalg."""
     heavy = ["sympy", "matplotlib", "scipy.special", "scipy.integrate", "scipy.sparse.linalg"]
