@@ -266,6 +266,8 @@ def neutral_curve(curve: NeutralCurve, axis: "Axes", quantity: str) -> "Axes":
 def neutral_point(point: NeutralPoint, axis: "Axes") -> "Axes":
     """The point at (k, value), as in the figure of a curve, with error bars."""
     if point.k is not None and point.value is not None:
+        if not axis.has_data():  # error bars are no scale for a point alone
+            axis.set(xlim=(0, 2 * point.k or 1), ylim=sorted((0, 2 * point.value or 1)))
         axis.errorbar(point.k, point.value, xerr=point.k_error, yerr=point.error, fmt="o", color=RED, markersize=5)
     axis.set(xlabel="wavenumber $k$", ylabel=f"{point.vary} {NEUTRAL['value']}")
     return axis
