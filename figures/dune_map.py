@@ -64,17 +64,17 @@ def draw(data):
             axis.set_title(rf"$\mu_1$ = {mu1}", fontsize=9)
             axis.set(xlabel="Re", ylabel=r"excess Shields ratio $\theta - 1$" if name == "k_max" else "",
                      yscale="log")
-    legend(figure)
+    legend(figure, [state for state, where in states(data["status"]).items() if where.any()])
     return figure
 
 
-def legend(figure):
+def legend(figure, hatched):
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
     handles = [Line2D([], [], color=RED, label="jump between branches"),
                Line2D([], [], color=GREY, linestyle="--", label="below: $C > 0$ throughout the bed"),
-               *(Patch(facecolor="none", hatch=pattern, label=state) for state, pattern in HATCHES.items())]
+               *(Patch(facecolor="none", hatch=HATCHES[state], label=state) for state in hatched)]
     figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=8)
 
 
