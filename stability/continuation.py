@@ -12,6 +12,7 @@ import numpy as np
 
 from .bvp import Problem, solve
 from .checks import check_wavenumbers
+from .eigenvalue import Eigenvalue, Eigenvalues
 from .errors import ModeLost, NotResolved
 from .optimum import SEARCH
 from .solver import TOLERANCE
@@ -35,7 +36,7 @@ _K_ACCURACY = 1e-7  # of the bounded minimisation, relative to k
 
 
 @dataclass(frozen=True)
-class Point:
+class Point(Eigenvalue):
     """An eigenvalue found by solve_bvp.
 
     `error` is the change of sigma when every mesh interval is halved; sigma is that of the finer mesh, in
@@ -50,46 +51,22 @@ class Point:
     unknowns: int
     status: str
 
-    @property
-    def growth_rate(self):
-        return self.sigma.real
-
-    @property
-    def c(self):
-        """Complex wave speed i sigma / k."""
-        return 1j * self.sigma / self.k
-
-    @property
-    def phase_speed(self):
-        return self.c.real + 0.0  # no negative zero
-
 
 @dataclass(frozen=True)
-class Continuation:
+class Continuation(Eigenvalues):
     """Points along k or along a parameter; `lost` maps each value that was not reached to the reason."""
 
     points: tuple
     lost: dict = field(hash=False)
 
     @property
+    def modes(self):
+        return self.points
+
+    @property
     def k(self):
-        return np.array([point.k for point in self.points])
+        return self._of_each("k")
 
-    @property
-    def sigma(self):
-        return np.array([point.sigma for point in self.points])
-
-    @property
-    def error(self):
-        return np.array([point.error for point in self.points])
-
-    @property
-    def growth_rate(self):
-        return self.sigma.real
-
-    @property
-    def phase_speed(self):
-        return np.array([point.phase_speed for point in self.points])
 
 
 def continue_in_k(flow, k, *, tolerance=TOLERANCE, residual=None, guess=None, setting=None):

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .eigenvalue import Eigenvalue
 from .errors import NotResolved
 from .status import is_resolved
 
@@ -18,7 +19,7 @@ _SLOPE = 4.0  # error of d sigma/dk in units of error of sigma / k (measured)
 
 
 @dataclass(frozen=True)
-class Mode:
+class Mode(Eigenvalue):
     """An eigenvalue with error bar and eigenvectors.
 
     `sigma` complex growth rate, `error` bound of its absolute error, `slope` d sigma/dk, `truncation` and
@@ -39,19 +40,6 @@ class Mode:
     rate_slope: complex = field(repr=False)
     x: np.ndarray = field(repr=False, compare=False)
     y: np.ndarray = field(repr=False, compare=False)
-
-    @property
-    def growth_rate(self) -> float:
-        return self.sigma.real
-
-    @property
-    def c(self) -> complex:
-        """Complex wave speed i sigma / k."""
-        return 1j * self.sigma / self.k
-
-    @property
-    def phase_speed(self) -> float:
-        return self.c.real + 0.0  # no negative zero
 
     @property
     def slope_error(self) -> float:

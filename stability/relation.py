@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from .checks import check_flag, check_options, check_wavenumbers
+from .eigenvalue import Eigenvalues
 from .errors import ModeLost, StepsExhausted, naming
 from .flows.base import check_flow
 from .mode import Mode, require
@@ -34,7 +35,7 @@ _CLOSE = 1e-2  # relative distance of leading rates within which both are comput
 
 
 @dataclass(frozen=True, repr=False)
-class DispersionRelation(Record):
+class DispersionRelation(Eigenvalues, Record):
     """sigma(k) of one mode. Arrays have shape (points,), in the order of k.
 
     `lost` maps wavenumbers at which the mode could not be followed to the reason (only with
@@ -54,34 +55,12 @@ class DispersionRelation(Record):
 
     @property
     def k(self) -> np.ndarray:
-        return np.array([mode.k for mode in self.modes])
-
-    @property
-    def sigma(self) -> np.ndarray:
-        """Complex growth rates."""
-        return np.array([mode.sigma for mode in self.modes])
-
-    @property
-    def growth_rate(self) -> np.ndarray:
-        return self.sigma.real
-
-    @property
-    def phase_speed(self) -> np.ndarray:
-        return np.array([mode.phase_speed for mode in self.modes])
+        return self._of_each("k")
 
     @property
     def slope(self) -> np.ndarray:
         """d sigma / dk."""
-        return np.array([mode.slope for mode in self.modes])
-
-    @property
-    def error(self) -> np.ndarray:
-        """Bounds of the absolute error of sigma."""
-        return np.array([mode.error for mode in self.modes])
-
-    @property
-    def status(self) -> tuple[str, ...]:
-        return tuple(mode.status for mode in self.modes)
+        return self._of_each("slope")
 
     def plot(self, ax: "Axes | None" = None, quantity: str = "growth_rate") -> "Axes":
         """Draw growth_rate or phase_speed against k into the matplotlib Axes `ax`, or a new one; return it."""

@@ -16,6 +16,7 @@ import numpy as np
 from scipy.linalg import qr
 
 from .checks import check_flag, check_integer, check_wavenumber
+from .eigenvalue import Eigenvalues
 from .errors import ModeLost
 from .flows.base import check_flow
 from .mode import Mode, require
@@ -41,7 +42,7 @@ _SMALL = 10  # degree of the pencil whose finite eigenvalues are counted
 
 
 @dataclass(frozen=True, repr=False)
-class Spectrum(Record):
+class Spectrum(Eigenvalues, Record):
     """The least stable modes of a flow at wavenumber k, sorted by decreasing growth rate."""
 
     flow: Any
@@ -49,28 +50,6 @@ class Spectrum(Record):
     modes: tuple[Mode, ...]
     settings: Mapping[str, Any] = field(default_factory=dict, compare=False)
     dimension: ClassVar[str] = "mode"
-
-    @property
-    def sigma(self) -> np.ndarray:
-        """Complex growth rates (modes,)."""
-        return np.array([mode.sigma for mode in self.modes])
-
-    @property
-    def growth_rate(self) -> np.ndarray:
-        return self.sigma.real
-
-    @property
-    def phase_speed(self) -> np.ndarray:
-        return np.array([mode.phase_speed for mode in self.modes])
-
-    @property
-    def error(self) -> np.ndarray:
-        """Error bars of sigma (modes,)."""
-        return np.array([mode.error for mode in self.modes])
-
-    @property
-    def status(self) -> tuple[str, ...]:
-        return tuple(mode.status for mode in self.modes)
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Draw growth rates against phase speeds into the matplotlib Axes `ax`, or a new one; return it."""
