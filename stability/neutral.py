@@ -48,8 +48,25 @@ _MARGIN = 1.15  # factor in k beyond the range asked for within which the curve 
 _SPAN = 1e4  # the continuation ends where the value has changed by this factor
 
 
+class _ZeroGrowth(Record):
+    """Base of what solves for the parameter `vary`."""
+
+    vary: str
+
+    @property
+    def bounded(self) -> str:
+        return self.vary
+
+    @property
+    def swept(self) -> tuple[str | None, ...]:
+        return (self.vary,)
+
+    def about(self) -> dict[str, Any]:
+        return {"vary": self.vary}
+
+
 @dataclass(frozen=True, repr=False)
-class NeutralPoint(Record):
+class NeutralPoint(_ZeroGrowth):
     """A value of the parameter `vary` at which a mode neither grows nor decays.
 
     `k` is its wavenumber (0: long-wave threshold), `error` and `k_error` bound the absolute errors of `value`
@@ -68,14 +85,6 @@ class NeutralPoint(Record):
     settings: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
     dimension: ClassVar[str] = "flow"
 
-    @property
-    def bounded(self) -> str:
-        return self.vary
-
-    @property
-    def swept(self) -> tuple[str | None, ...]:
-        return (self.vary,)
-
     def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Mark (k, value) in the matplotlib Axes `ax`, that of a `NeutralCurve` say, or in a new one; return it."""
         from . import plots
@@ -87,9 +96,6 @@ class NeutralPoint(Record):
         status = row.pop("status")
         return [{**row, "k_error": self.k_error, "status": status}]
 
-    def about(self) -> dict[str, Any]:
-        return {"vary": self.vary}
-
     def row(self) -> Row:
         """Return the row of this point in the table of a curve."""
         return {"k": self.k, self.vary: self.value, "phase_speed": self.phase_speed, "error": self.error,
@@ -97,7 +103,7 @@ class NeutralPoint(Record):
 
 
 @dataclass(frozen=True, repr=False)
-class NeutralCurve(Record):
+class NeutralCurve(_ZeroGrowth):
     """Neutral points at the wavenumbers asked for, by increasing value at each, and the `trace` (points, 2)
     of (k, value) along the whole curve from one end to the other."""
 
@@ -108,14 +114,6 @@ class NeutralCurve(Record):
     settings: Mapping[str, Any] = field(default_factory=dict, compare=False)
     dimension: ClassVar[str] = "point"
 
-    @property
-    def bounded(self) -> str:
-        return self.vary
-
-    @property
-    def swept(self) -> tuple[str | None, ...]:
-        return (self.vary,)
-
     def plot(self, ax: "Axes | None" = None, quantity: str = "value") -> "Axes":
         """Draw value or phase_speed against k into the matplotlib Axes `ax`, or a new one; return it."""
         from . import plots
@@ -125,12 +123,9 @@ class NeutralCurve(Record):
     def rows(self) -> list[Row]:
         return [point.row() for point in self.points]
 
-    def about(self) -> dict[str, Any]:
-        return {"vary": self.vary}
-
 
 @dataclass(frozen=True, repr=False)
-class NeutralSweep(Record):
+class NeutralSweep(_ZeroGrowth):
     """The critical point of every flow of a sweep over the parameter `over` of `flow`."""
 
     flow: Any
@@ -147,12 +142,8 @@ class NeutralSweep(Record):
         return self.points[0].settings
 
     @property
-    def bounded(self) -> str:
-        return self.vary
-
-    @property
     def swept(self) -> tuple[str | None, ...]:
-        return self.over, self.vary
+        return self.over, *super().swept
 
     def plot(self, ax: "Axes | None" = None, quantity: str = "value") -> "Axes":
         """Draw value or k against the swept parameter into the matplotlib Axes `ax`, or a new one; return it."""
@@ -164,7 +155,7 @@ class NeutralSweep(Record):
         return [{self.over: getattr(point.flow, self.over), **point.row()} for point in self.points]
 
     def about(self) -> dict[str, Any]:
-        return {"vary": self.vary, "over": self.over}
+        return {**super().about(), "over": self.over}
 
 
 def critical(flow: "Flow", vary: str, *, long_wave: bool = False, tolerance: float = TOLERANCE,
