@@ -8,6 +8,8 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import csc_array, csr_array
 
+_BLOCK = 24  # lines
+
 
 class Stack:
     """`parts` matrices of shape (rows, columns), from entries part, row, column, value (entries,).
@@ -42,10 +44,13 @@ class Stack:
 
     @cached_property
     def _by_part(self):
-        """Matrix (parts, lines) that sums the lines of each part."""
-        parts, count = self._shape[0], len(self.part)
-        starts = np.searchsorted(self.part, np.arange(parts + 1))
-        return csr_array((np.ones(count), np.arange(count), starts), (parts, count))
+        """Matrices (blocks, lines) and (parts, blocks) that sum the lines of each part, a block of them at a time.
+
+        Partial sums stay short: one sum over all lines would lose a digit to rounding at a large degree.
+        """
+        starts = np.searchsorted(self.part, np.arange(self._shape[0] + 1))
+        blocks = np.unique(np.concatenate([starts, np.arange(0, starts[-1], _BLOCK)]))
+        return _sums(blocks), _sums(np.searchsorted(blocks, starts))
 
     def times(self, x):
         """Products of every part with x: (lines, points), for the methods below."""
@@ -65,11 +70,20 @@ class Stack:
 
     def brackets(self, y, products):
         """y^T part x for every part: (parts, points)."""
-        return self._by_part @ (y[self.row] * products)
+        return self._of_parts(y[self.row] * products)
 
     def squares(self, y, x):
         """Sum over the entries of each part of |y_i entry_ij x_j|^2: (parts, points)."""
-        return self._by_part @ (square(y)[self.row] * (self._squares @ square(x)))
+        return self._of_parts(square(y)[self.row] * (self._squares @ square(x)))
+
+    def _of_parts(self, lines):
+        lines_to_blocks, blocks_to_parts = self._by_part
+        return blocks_to_parts @ (lines_to_blocks @ lines)
+
+
+def _sums(starts):
+    """Matrix that sums the numbers from each start up to the next, (starts - 1, numbers)."""
+    return csr_array((np.ones(starts[-1]), np.arange(starts[-1]), starts), (len(starts) - 1, starts[-1]))
 
 
 def square(z):
