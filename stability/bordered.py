@@ -72,13 +72,14 @@ class Bordered:
 
 
 class Factors:
-    """LU factors of the sum of the parts of a `Bordered` times weights (parts,).
+    """LU factors of the sum of the parts of a `Bordered` times weights (parts,); `uneven` where it had to be scaled.
 
     Raises numpy's LinAlgError where a pivot vanishes.
     """
 
     def __init__(self, bordered, weights):
         flat, self._scales = bordered.sum(weights)
+        self.uneven = self._scales is not None
         band, right, bottom = bordered.blocks(flat)
         factor, self._solve = _BAND[band.dtype.kind]
         self._interior, self._lower, self._upper = bordered.interior, bordered.lower, bordered.upper

@@ -153,6 +153,14 @@ def test_modes_of_very_viscous_flows_keep_their_digits(flow, k):
         assert kind == "holds", reason
 
 
+def test_uneven_matrices_keep_the_digits_or_tell():
+    """Pressures of 1e30 in a film of depth 4e-6 beside a bed of thickness 8: the bar was exceeded 2e5 times."""
+    flow = flows.Dune(shields=9.14387521184334, mu1=992.7514530779238, b=2.846689817185222, Re=236117451046.43802,
+                      depth=3.5815408193692813e-06, fluid="layer")
+    (mode,) = dispersion(flow, 8.714937674024775e-06, mode="most-unstable", strict=False).modes
+    assert fuzz.truth(mode)[0] == "holds"
+
+
 def test_long_sums_leave_internal_modes_their_digits():
     """At degree 320 the quotient is a sum of thousands of products; added up in one go it was wrong by 1.3 bars."""
     flow = flows.RollWave(slope_deg=31.117309425315025, Fr2=0.9250494279606364, mu1=0.5915795474741232,
@@ -167,6 +175,7 @@ def test_long_sums_leave_internal_modes_their_digits():
     (flows.Dune(Re=2e-10, fluid="layer"), 0.5),
     (flows.Film(Re=2.6286467749671453e-16, slope_deg=7.435635610302282, We=1.4286771755755823e+19), 0.6473836077634917),
     (flows.TwoLayerCouette(viscosity_ratio=1600.0, depth_ratio=300.0, density_ratio=174.0, Re=2e-12, tension=1e3), 0.2),
+    (flows.Dune(shields=1.0000000237088233, mu1=0.4, Re=218777395140.42657, fluid="layer"), 0.8282769073829681),
 ], ids=str)
 def test_stresses_of_very_viscous_layers_leave_the_other_unknowns_their_digits(flow, k):
     """They are enormous beside the velocities, unless measured in viscous units: bars were exceeded a million times."""
