@@ -70,19 +70,19 @@ def refine(pencil, weights, rate, x=None, y=None, bars=True):
         settled = _settled(x_error, y_error)
         if settled[0]:
             found = _quotient(pencil, weights, x, y, settled, bars)
-            found = _twice(pencil, weights, found, bars) if factors.uneven else found
-            if found.settled[0]:
-                return found.split()[0]
-            break
+            return (_twice(pencil, weights, found, bars) if factors.uneven else found).split()[0]
     raise ModeLost(f"inverse iteration near rate {complex(rate):.6g} did not settle")
 
 
 def _twice(pencil, weights, found, bars):
     """The eigenvalue of uneven matrices by steps with the residual too; the difference joins its error.
 
-    Small unknowns beside large ones get few digits from a factorisation alone.
+    Small unknowns beside large ones get few digits from a factorisation alone. Where those steps do not settle, since
+    other modes are too near, it stays as it was found.
     """
     again = refine_many(pencil, weights, found.rate, found.x, found.y, [slice(0, 1)], bars)
+    if not again.settled[0]:
+        return found
     return replace(again, spread=again.spread + np.abs(again.rate - found.rate))
 
 
