@@ -11,8 +11,8 @@ import numpy as np
 from style import BLUE, GREY, main, plt
 
 from stability import dispersion, flows
+from stability.dense import finite_rates
 from stability.solver import Solver
-from stability.spectra import finite_rates
 from stability.threads import one_thread
 
 MU1 = (0.4, 0.7)

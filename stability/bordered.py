@@ -88,7 +88,15 @@ class Factors:
             raise np.linalg.LinAlgError("singular interior")
         self._bottom = bottom[:, : self._interior]
         self._coupled = self._inner(right)
-        self._border = np.linalg.inv(bottom[:, self._interior:] - self._bottom @ self._coupled)
+        self._schur = bottom[:, self._interior:] - self._bottom @ self._coupled
+        self._border = np.linalg.inv(self._schur)
+
+    def phase(self):
+        """Return the determinant over its modulus (scales are positive: they leave it alone)."""
+        diagonal = self._lu[self._lower + self._upper]
+        swaps = np.count_nonzero(self._pivots != np.arange(len(self._pivots)))
+        phases = np.prod(diagonal / np.abs(diagonal))
+        return (-1) ** swaps * phases / abs(phases) * np.linalg.slogdet(self._schur)[0]
 
     def solve(self, f):
         """Return z with M z = f, (size, points)."""

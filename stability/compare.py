@@ -16,15 +16,16 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from .branch import Branch, surface_mode
+from .dense import finite_rates
 from .errors import ModeLost, ParameterError
 from .output import Row
 from .record import Record
 from .relation import dispersion
 from .solver import DEGREES, Solver
-from .spectra import finite_rates, spectrum
+from .spectra import spectrum
 from .status import RESOLVED
 from .threads import one_thread
-from .tracking import follow, surface_mode
 
 COLLOCATION_DEGREES = tuple(degree for degree in DEGREES if degree <= 128)
 DENSE_DEGREES = (8, 12, 16, 24, 32, 48, 64, 96, 128)
@@ -167,10 +168,10 @@ def _followed(flow, mode, degree):
     solver.prepare(sweep)
     first = sweep[0]
     start = surface_mode(solver, first) if flow.has_surface_mode() else solver.solve(first, _guess(mode, first))
-    path = follow(solver, start, sweep)
-    if path.lost:
-        raise path.lost
-    return path.modes[POINTS // 2]
+    found, lost = Branch(solver, start, rough=solver).at(sweep)
+    for reason in lost.values():
+        raise ModeLost(reason)
+    return found[mode.k]
 
 
 def _guess(mode, k):

@@ -61,14 +61,19 @@ def energy(solver, k, degree):
 
 
 def condition_numbers(modes):
-    """Return the condition numbers (modes,) of eigenvalues of one flow in the energy norm."""
-    solver = Solver(modes[0].flow) if modes else None
-    norms = {}
+    """Return the condition numbers (modes,) of eigenvalues of one flow, or of its symmetry classes, in the energy norm.
+
+    Half the domain gives the same number as the whole.
+    """
+    solvers: dict = {}
+    norms: dict = {}
     found = []
     for mode in modes:
-        key = mode.k, mode.degree
+        if mode.flow not in solvers:
+            solvers[mode.flow] = Solver(mode.flow)
+        key = mode.flow, mode.k, mode.degree
         if key not in norms:
-            norms[key] = energy(solver, *key)
+            norms[key] = energy(solvers[mode.flow], mode.k, mode.degree)
         norm = norms[key]
         found.append(norm.width * np.linalg.norm(norm.state @ mode.x) * np.linalg.norm(norm.adjoint @ mode.y))
     return np.array(found)

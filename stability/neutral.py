@@ -24,7 +24,7 @@ from .record import Record
 from .solver import DEGREES, TOLERANCE, check_accuracy
 from .status import RESOLVED, is_resolved
 from .threads import one_thread
-from .tracking import surface_mode
+from .branch import surface_mode
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -1,58 +1,34 @@
-"""The fastest growing wavenumber: a global look along the surface mode, then Newton on d sigma_r / dk = 0.
-
-The look starts in the long-wave regime, where growth is a power of k, and follows the mode with its
-analytic slope in steps that its predictor can vouch for; a maximum lies wherever the slope turns from
-positive to negative. Every one found is refined, because the largest can change branch.
-"""
+"""The fastest growing wavenumber, as a result: every maximum that `stability.crests` finds, the largest first."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from math import exp, log
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from .checks import check_flag, check_wavenumbers, shown
+from .checks import check_flag, check_options, check_wavenumbers, shown
+from .crests import Maximum, crest, look, may_grow, surface_look
 from .errors import ModeLost, NotResolved, ParameterError, naming
 from .flows.base import check_flow
-from .mode import Mode
 from .output import Row
 from .record import Record
 from .solver import DEGREES, TOLERANCE, Assembly, Solver, check_accuracy
-from .status import RESOLVED, STABLE, is_outgrown, is_resolved
+from .status import STABLE, is_outgrown, is_resolved
 from .threads import one_thread
-from .tracking import follow, surface_mode, survey
-from .wellposed import flag_outgrown, well_posedness
+from .wellposed import flag_outgrown, ill_posed_somewhere, well_posedness
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from .flows import Flow
 
-SEARCH = (1e-2, 100.0)  # default range of k; the lower end moves down until growth is a power law
-_ROUGH = 1e-4  # tolerance of the global look: small systems find the brackets
-_STEP = 0.5  # largest of the global look, in log k
-_DECAYED = 10.0  # the look ends once the mode has decayed over this factor in k ...
-_SHORT = 10.0  # ... and waves are this short: a second branch may grow where the first has decayed
-_ITERATIONS = 20
-
-
-@dataclass(frozen=True)
-class Maximum:
-    """A local maximum of the growth rate: `error` bounds the absolute error of k."""
-
-    k: float
-    error: float
-    mode: Mode
-
-    @property
-    def growth_rate(self) -> float:
-        return self.mode.growth_rate
+MODES = ("surface", "leading")
+SEARCH = (1e-2, 100.0)  # default range of k; its lower end moves down until growth is a power of k
 
 
 @dataclass(frozen=True, repr=False)
 class Optimum(Record):
-    """All local maxima of the growth rate of the surface mode, by decreasing growth rate.
+    """Local maxima of growth rates over k, by decreasing growth rate: of the mode that `settings` names.
 
     `status` is "resolved" or says why there is none; `k_max`, `growth_rate`, `phase_speed` and
     `error` (of k_max) belong to the first and raise NotResolved if there is none.
@@ -175,36 +151,47 @@ class Optima(Record):
         return {self.over: getattr(optimum.flow, self.over)} if self.over else {}
 
 
-def k_max(flow: "Flow", search: tuple[float, float] = SEARCH, *, tolerance: float = TOLERANCE,
-          max_degree: int = DEGREES[-1], strict: bool = True) -> Optimum:
-    """Return the `Optimum` of a flow: where the growth rate of its surface mode is largest.
+def k_max(flow: "Flow", search: tuple[float, float] | None = None, mode: str | None = None, *,
+          tolerance: float = TOLERANCE, max_degree: int = DEGREES[-1], strict: bool = True) -> Optimum:
+    """Return the `Optimum` of a flow: where the growth rate is largest, `search` = (low, high) bounding k.
 
-    Only maxima with positive growth rate count: a flow that decays everywhere has none. Raises
-    NotResolved if there is none; with strict=False the record says so in `status`.
+    mode="leading" takes the fastest of all modes (the default where the flow is well posed), "surface" the slow
+    surface mode alone (the default of ill-posed flows, whose internal modes grow without bound). Without a search it
+    is `SEARCH`, and for a surface mode its lower end moves down until growth is a power of k. Only maxima with
+    positive growth rate count: a flow that decays everywhere has none. Raises NotResolved if there is none; with
+    strict=False the record says so in `status`.
     """
     strict = check_flag("strict", strict)
-    (optimum,) = k_max_sweep([check_flow(flow)], search, tolerance=tolerance, max_degree=max_degree)
+    (optimum,) = k_max_sweep([check_flow(flow)], search, mode, tolerance=tolerance, max_degree=max_degree)
     if strict and not is_resolved(optimum.status):
         raise NotResolved(naming(flow, optimum.status))
     return optimum
 
 
-def k_max_sweep(flows: "Iterable[Flow]", search: tuple[float, float] = SEARCH, *, tolerance: float = TOLERANCE,
-                max_degree: int = DEGREES[-1]) -> Iterator[Optimum]:
+def k_max_sweep(flows: "Iterable[Flow]", search: tuple[float, float] | None = None, mode: str | None = None, *,
+                tolerance: float = TOLERANCE, max_degree: int = DEGREES[-1]) -> Iterator[Optimum]:
     """Yield the `Optimum` of each flow in turn; what failed is in its status.
 
     Flows with the same equations share their matrices (dunes at different Re, say).
     """
     tolerance, max_degree = check_accuracy(tolerance, max_degree)
-    search = check_search(search)
-    yield from flag_outgrown(_optima(flows, search, tolerance, max_degree))
+    search = None if search is None else check_search(search)
+    mode = None if mode is None else check_options("mode", mode, MODES)
+    yield from flag_outgrown(_optima(flows, search, mode, tolerance, max_degree))
 
 
-def _optima(flows, search, tolerance, max_degree):
+def _optima(flows, search, mode, tolerance, max_degree):
     assembly = None
     for flow in flows:
-        optimum, assembly = _optimum(flow, search, tolerance, max_degree, assembly)
-        yield optimum
+        assembly = assembly.serving(flow) if assembly else Assembly(flow)
+        yield _optimum(Solver(flow, tolerance, max_degree, assembly), search, mode or default_mode(flow))
+
+
+def default_mode(flow: "Flow") -> str:
+    """The mode whose maxima `k_max` returns unless told otherwise."""
+    if not flow.has_surface_mode():
+        return "leading"
+    return "leading" if flow.rivals and not ill_posed_somewhere(flow) else "surface"
 
 
 def check_search(search):
@@ -215,105 +202,58 @@ def check_search(search):
     return wavenumbers
 
 
-def check_surface_mode(flow):
-    """Raise a ParameterError where the flow has no surface mode: the maxima are those of its growth rate."""
-    if not flow.has_surface_mode():
-        raise ParameterError(f"{flow.name} has no slow surface mode, and k_max is that of the surface mode; ask for "
-                             "growth rates at given wavenumbers (dispersion), or for a neutral curve")
-
-
 @one_thread
-def _optimum(flow, search, tolerance, max_degree, assembly):
-    check_surface_mode(flow)
-    assembly = assembly.serving(flow) if assembly else Assembly(flow)
-    solver = Solver(flow, tolerance, max_degree, assembly)
-    look = solver.rough(_ROUGH)
+def _optimum(solver, search, mode):
+    if mode == "surface" and not solver.flow.has_surface_mode():
+        solver.flow.long_wave(1.0)  # says so
+    low, high = search or SEARCH
+    settings = {"mode": mode, "tolerance": solver.tolerance, "max_degree": solver.degrees[-1]}
     try:
-        modes, status = _look(look, *search)
-        maxima = [_refine(solver, left, right) for left, right in zip(modes, modes[1:], strict=False)
-                  if _growth_slope(left) > 0 >= _growth_slope(right)]
+        looks = [surface_look(solver, low, high)] if solver.flow.has_surface_mode() else []
+        looks += [look(solver, low, high)] if mode == "leading" and solver.flow.rivals else []
     except ModeLost as reason:
-        maxima, status = [], str(reason)
-    maxima = sorted((m for m in maxima if m.growth_rate > 0), key=lambda m: -m.growth_rate)
-    settings = {"tolerance": tolerance, "max_degree": max_degree}
-    return Optimum(flow, tuple(maxima), _status(maxima, status, search), settings), assembly
+        return Optimum(solver.flow, (), str(reason), settings)
+    found = [maximum for one in looks for maximum in _maxima(solver, one)]
+    inside = [one for one in found if search is None or low <= one.k <= high]
+    others = mode == "surface" and solver.flow.rivals
+    maxima = _distinct(sorted(inside, key=lambda one: -one.growth_rate))
+    return Optimum(solver.flow, tuple(maxima), _status(looks, found, maxima, others, low, high), settings)
 
 
-def _status(maxima, status, search):
-    if not is_resolved(status):
-        return status
+def _maxima(solver, one):
+    """The positive maxima in the brackets of a look; those at which the mode is lost are left out, and that is said."""
+    found = []
+    for left, right in one.brackets:
+        if may_grow(left, right):
+            maximum = crest(solver, left, right)
+            if maximum.growth_rate > 0:
+                found.append(maximum)
+    return found
+
+
+def _distinct(maxima):
+    kept = []
+    for one in maxima:
+        if not any(abs(one.k - other.k) <= one.error + other.error + 1e-9 * one.k
+                   and abs(one.mode.sigma - other.mode.sigma) <= 1e-6 * abs(one.mode.sigma) for other in kept):
+            kept.append(one)
+    return kept
+
+
+def _status(looks, found, maxima, others, low, high):
+    """Whether the largest maximum is known to be the answer, or why not; `others`: modes that were not looked at."""
+    trouble = [one.trouble for one in looks if one.trouble]
+    if trouble:
+        return trouble[0]
+    best = maxima[0].growth_rate if maxima else 0.0
+    below = [node for one in looks for node in one.ends[0] if node.slope.real < 0 and node.growth_rate > best]
+    above = [node for one in looks for node in one.ends[1] if node.slope.real > 0 and node.growth_rate > best]
+    outside = [one for one in found if one not in maxima and one.growth_rate > best]
+    if above:
+        return f"growth still rises at k = {high:g}, the end of the search"
+    if outside or below:
+        return f"growth is larger at k = {min([*outside, *below], key=lambda one: one.k).k:.6g}, outside of the search"
     if not maxima:
-        return f"{STABLE}: no waves grow for k up to {search[1]:g}"
-    return maxima[0].mode.status
-
-
-def _look(solver, low, high):
-    """Modes along k from the long-wave regime to where the mode has decayed for good, and a status."""
-    modes = [_power_law_start(solver, low)]
-    growing = modes[0].k
-    try:
-        for mode in survey(solver, modes[0], high, _STEP):
-            modes.append(mode)
-            growing = mode.k if mode.growth_rate > 0 else growing
-            if mode.k > max(_DECAYED * growing, _SHORT):
-                break
-    except ModeLost as reason:
-        return modes, str(reason)
-    if _growth_slope(modes[-1]) > 0 and modes[-1].growth_rate > 0:
-        return modes, f"growth still rises at k = {modes[-1].k:g}, the end of the search"
-    return modes, RESOLVED
-
-
-def _power_law_start(solver, k):
-    """The surface mode at a k so small that growth is a power of k there and a decade below: no maximum lies lower."""
-    above = None
-    for _ in range(8):
-        mode = surface_mode(solver, k)
-        if not 0.9 < mode.k * _growth_slope(mode) / mode.growth_rate < 2.5:
-            above = None
-        elif above:
-            return above
-        else:
-            above = mode
-        k = mode.k / 10
-    raise ModeLost(f"{solver.flow}: growth follows no power of k down to k = {k:.1e}")
-
-
-def _growth_slope(mode):
-    return mode.slope.real
-
-
-def _refine(solver, low, high):
-    """Newton on the analytic slope between two modes that bracket a maximum, safeguarded by the bracket."""
-    curvature = (_growth_slope(high) - _growth_slope(low)) / (high.k - low.k)
-    for _ in range(_ITERATIONS):
-        k = _slope_zero(low, high)
-        near = low if abs(k - low.k) < abs(k - high.k) else high
-        path = follow(solver, near, [k])
-        if path.lost:
-            raise path.lost
-        mode = path.modes[0]
-        slope = _growth_slope(mode)
-        if abs(mode.k - near.k) > 1e-6 * mode.k:
-            curvature = (slope - _growth_slope(near)) / (mode.k - near.k)
-        low, high = (mode, high) if slope > 0 else (low, mode)
-        if abs(slope) < 1e-13 * abs(curvature) * mode.k or high.k - low.k < 1e-14 * mode.k:
-            break
-    return Maximum(mode.k, float((abs(slope) + mode.slope_error) / abs(curvature)), mode)
-
-
-def _slope_zero(low, high):
-    """Zero of the growth slope between two modes, from the cubic through values and slopes in log k.
-
-    Where one end is much nearer the zero, a Newton step from it with the secant curvature.
-    """
-    a, b = low.k * _growth_slope(low), high.k * _growth_slope(high)
-    h = log(high.k / low.k)
-    if min(abs(a), abs(b)) < 1e-3 * max(abs(a), abs(b)):
-        t = a / (a - b)
-    else:
-        secant = (high.growth_rate - low.growth_rate) / h
-        roots = np.roots((3 * (a + b - 2 * secant), 2 * (3 * secant - 2 * a - b), a))
-        inside = [root.real for root in roots if abs(root.imag) < 1e-12 and 0 < root.real < 1]
-        t = inside[0] if len(inside) == 1 else a / (a - b)
-    return low.k * exp(t * h)
+        which = "the surface mode does not grow" if others else "no waves grow"
+        return f"{STABLE}: {which} for k up to {high:g}"
+    return maxima[0].status

@@ -11,10 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from .dense import dense_degrees, finite_rates
 from .errors import ModeLost, ParameterError
+from .listing import leading_modes
 from .sensitivity import parameter_slope
 from .solver import Solver
-from .spectra import dense_degrees, finite_rates, leading_modes
 
 _NEAR = 0.6  # in log k
 _DRIFT = 0.05  # of the growth between two degrees, relative to |sigma|, at which a look is good enough

@@ -7,18 +7,19 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from .branch import Branch, surface_branch
 from .checks import check_flag, check_options, check_wavenumbers
 from .eigenvalue import Eigenvalues
-from .errors import ModeLost, StepsExhausted, naming
+from .errors import ModeLost, naming
 from .flows.base import check_flow
+from .listing import leading_modes, listed
 from .mode import Mode, require
 from .output import Row
 from .record import Record
 from .solver import DEGREES, TOLERANCE, Solver, check_accuracy
-from .spectra import converged_rates, leading_modes, polished
 from .status import INTERRUPTED, is_resolved, outgrown
 from .threads import one_thread
-from .tracking import Collision, follow, surface_mode
+from .tracking import Collision
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,9 +30,7 @@ if TYPE_CHECKING:
 
 MODES = ("surface", "leading", "most-unstable")
 
-_ROUGH = 1e-4  # tolerance of the way to the first wavenumber
 _PORTION = 200  # wavenumbers followed before what is done is handed over
-_CLOSE = 1e-2  # relative distance of leading rates within which both are computed properly
 
 
 @dataclass(frozen=True, repr=False)
@@ -124,9 +123,11 @@ def dispersion(flow: "Flow", k: "ArrayLike", mode: str | None = None, *, toleran
     """Return the `DispersionRelation` of a flow at wavenumbers k, a number or a sequence in any order.
 
     mode="surface" follows the slow surface mode from its long-wave limit (the default where the flow has
-    one), "leading" follows the least stable mode of the smallest k (the default elsewhere), and
-    "most-unstable" takes the least stable mode of the spectrum at each k. `tolerance` bounds error / |sigma|.
-    Raises NotResolved or ModeLost; with strict=False the record says in `status` and `lost` what failed.
+    one), "leading" follows the mode that is the least stable one at the wavenumber of the flow, 1 unless it says
+    otherwise (the default elsewhere), and "most-unstable" takes the least stable mode of the spectrum at each k. A
+    mode that is followed is the same one at a wavenumber whatever else is asked for. `tolerance` bounds the error
+    relative to |sigma|. Raises NotResolved or ModeLost; with strict=False the record says in `status` and `lost` what
+    failed.
     """
     strict = check_flag("strict", strict)
     parts = list(dispersion_parts(flow, k, mode, tolerance=tolerance, max_degree=max_degree))
@@ -174,50 +175,38 @@ def default_mode(flow: "Flow") -> str:
 
 
 def _surface(solver, wavenumbers):
-    """Follow the surface mode, roughly on the way from its long-wave limit to the first wavenumber."""
-    k = wavenumbers[0]
-    rough = solver.rough(_ROUGH)
-    try:
-        way = follow(rough, surface_mode(rough, k), [k])
-        if isinstance(way.lost, StepsExhausted):
-            raise way.lost
-        if way.lost or way.collisions:  # a close look is needed
-            first = surface_mode(solver, k)
-        else:
-            (near,) = way.modes
-            first = solver.solve(k, near.rate, (near.degree, near.x, near.y))
-        yield from _followed(solver, wavenumbers, first)
-    except ModeLost as reason:
-        yield {}, dict.fromkeys(wavenumbers.tolist(), str(reason)), ()
+    """Follow the surface mode from its long-wave limit."""
+    yield from _followed(lambda: surface_branch(solver), wavenumbers)
 
 
 def _leading(solver, wavenumbers):
-    """Follow the leading mode within its symmetry class, on half the domain where the flow has one."""
-    k = float(wavenumbers[0])
+    """Follow the mode that leads at the flow's own wavenumber."""
+    yield from _followed(lambda: leading_branch(solver), wavenumbers)
+
+
+def _followed(start, wavenumbers):
     try:
-        halves = [solver if half == solver.flow else Solver(half, solver.tolerance, solver.degrees[-1])
-                  for half in solver.flow.halves()]
-        dense = [converged_rates(half, k, 1) for half in halves]
-        best = max(rates[0].real for rates, _ in dense)
-        rivals = [(polished(half, k, 1, *found)[0], half) for half, found in zip(halves, dense, strict=True)
-                  if found[0][0].real > best - _CLOSE * abs(found[0][0])]
-        first, solver = max(rivals, key=lambda rival: rival[0].growth_rate)
-        yield from _followed(solver, wavenumbers, first)
+        branch = start()
     except ModeLost as reason:
         yield {}, dict.fromkeys(wavenumbers.tolist(), str(reason)), ()
-
-
-def _followed(solver, wavenumbers, start):
+        return
+    told = 0
     for first in range(0, len(wavenumbers), _PORTION):
-        portion = wavenumbers[first: first + _PORTION]
-        solver.prepare(portion)
-        path = follow(solver, start, portion)
-        found = {mode.k: mode for mode in path.modes}
-        yield found, {k: str(path.lost) for k in portion.tolist() if k not in found}, path.collisions
-        if path.lost:
-            yield {}, dict.fromkeys(wavenumbers[first + _PORTION:].tolist(), str(path.lost)), ()
-            return
-        start = path.modes[-1]
+        found, lost = branch.at(wavenumbers[first: first + _PORTION])
+        yield found, lost, branch.collisions[told:]
+        told = len(branch.collisions)
+
+
+def leading_branch(solver):
+    """Return the branch of the mode that leads at `flow.wavenumber`, within its symmetry class on half the domain.
+
+    Of two that lead together, the one that travels downstream faster.
+    """
+    rivals = listed(solver, solver.flow.wavenumber, 1).modes
+    best = max(mode.growth_rate - mode.error for mode in rivals)
+    mode = max((mode for mode in rivals if mode.growth_rate + mode.error >= best), key=lambda mode: mode.phase_speed)
+    (half,) = (half for half in solver.halves if half.flow == mode.flow)
+    return Branch(half, mode)
 
 
 def _most_unstable(solver, wavenumbers):

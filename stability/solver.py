@@ -69,8 +69,17 @@ class Solver:
         self.pencil = self.assembly.pencil
         self._functions = {}
 
+    @cached_property
+    def halves(self):
+        """Solvers of the symmetry classes of the flow: this one alone where it has none."""
+        return tuple(self if half == self.flow else Solver(half, self.tolerance, self.degrees[-1], bars=self.bars)
+                     for half in self.flow.halves())
+
     def prepare(self, k):
         """Evaluate the flow's functions of k for a whole array (count,) at once."""
+        k = k[[one not in self._functions for one in k.tolist()]]
+        if not len(k):
+            return
         values = np.array(list(self.flow.evaluate(k).values())).T  # (count, value slope error, functions)
         self._functions.update(zip(k.tolist(), values if len(values) else [values] * len(k), strict=True))
 

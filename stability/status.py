@@ -31,3 +31,8 @@ def is_outgrown(status: str) -> bool:
 def outgrown(status: str) -> str:
     """Return the status of a mode that another one outgrows."""
     return status + _OUTGROWN
+
+
+def doubtful(why: str) -> str:
+    """Return the status of a listed mode where others may be missing."""
+    return f"others may be missing: {why}"

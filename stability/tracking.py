@@ -6,9 +6,8 @@ y_old^H B x_new * y_new^H B x_old near 1 (between different modes the product va
 and slopes at its two ends fit one smooth curve.
 """
 
-from contextlib import suppress
 from dataclasses import dataclass
-from math import copysign, exp, log
+from math import ceil, copysign, exp, floor, log
 
 import numpy as np
 
@@ -17,20 +16,16 @@ from .solver import transfer
 
 _FIRST_STEP = 0.3  # in log k
 _LARGEST_STEP = 0.6
+_CLOSE = 0.02  # step below which a collision is looked for, and a rough walk goes on with full accuracy
 _SMALLEST_STEP = 1e-8
 _PREDICTION = 0.05  # relative error of the predictor at which the step length is kept
 _BEND = 0.1  # largest departure of a step from the mean of its end slopes, relative
 _OVERLAP = 0.4  # largest deviation of the overlap from 1
 _STEPS, _STRETCH = 1000, 100  # attempts, and after how many of them it is asked whether those left can suffice
+_PACE = 0.1  # least way in log k in every _STRETCH attempts of a walk that has no end
 _BLIND = 100  # attempts in a row that the largest degree does not resolve
 _TRUST = 0.01  # largest relative error of a mode from which a walk goes on
-_GRID = 0.05  # spacing in log k of the wavenumbers that a survey lands on
-_FEW = 3  # wavenumbers that are walked to one by one
-_MANY = 8  # wavenumbers between two nodes that are refined one by one
-_STRIDE = 2.0  # of n more than these every _STRIDE sqrt(n)-th becomes a node first
-_DRIFT = 0.05  # largest relative difference of a refined rate from its interpolation
-_TRIES, _LIKELY = 16, 4  # wavenumbers at which the long-wave limit is sought, and those that mostly suffice
-_AGREEMENT = 0.03  # of the surface mode with its long-wave limit, in value and in slope
+_RUNG = 0.05  # spacing in log k of the ladder that a walk without an end lands on
 
 
 @dataclass(frozen=True)
@@ -59,186 +54,64 @@ class Path:
     lost: ModeLost | None = None
 
 
-def surface_mode(solver, k):
-    """Return the slow surface mode at a small wavenumber <= k, where it obeys its long-wave limit.
-
-    Value and logarithmic slope must both agree: another mode can meet one of them by chance.
-    """
-    tried = k / 5.0 ** np.arange(_TRIES)
-    limits, ahead = np.split(solver.flow.long_wave(np.concatenate((tried, 1.01 * tried))), 2)
-    exponents = np.log(ahead / limits) / log(1.01)
-    solver.prepare(tried[:_LIKELY])
-    for k, limit, exponent in zip(tried.tolist(), limits, exponents, strict=True):
-        def agrees(mode, limit=limit, exponent=exponent):
-            return abs(mode.sigma / limit - 1) < _AGREEMENT \
-                and abs(mode.k * mode.slope / mode.sigma - exponent) < _AGREEMENT
-
-        with suppress(ModeLost):
-            mode = solver.solve(k, limit / solver.width(k), glance=True)
-            if agrees(mode):
-                mode = solver.solve(k, mode.rate, (mode.degree, mode.x, mode.y))
-                if agrees(mode):
-                    return mode
-    raise ModeLost(f"{solver.flow}: no mode obeys the long-wave limit down to k = {k:.1e}")
-
-
 def follow(solver, start, wavenumbers):
-    """Follow the mode `start` through `wavenumbers`, a monotone sequence leading away from start.k.
-
-    A walk sets its own steps; the wavenumbers asked for are then interpolated between them and refined
-    all at once. The few that do not settle at once are reached by a walk of their own.
-    """
-    wavenumbers = np.asarray(wavenumbers, dtype=float)
-    walk = _Walk(solver, start)
+    """Follow the mode `start` through `wavenumbers`, a monotone sequence leading away from start.k, one by one."""
+    walk, modes = Walk(solver, start), []
     try:
-        if len(wavenumbers) <= _FEW:
-            modes = [walk.to(k) for k in wavenumbers.tolist()]
-        else:
-            walk.grid = np.sort(wavenumbers)
-            walk.to(float(wavenumbers[-1]))
-            modes = _between(solver, walk.segments, wavenumbers)
-        return Path(tuple(modes), tuple(walk.collisions))
+        for k in np.asarray(wavenumbers, dtype=float).tolist():
+            modes.append(walk.to(k))
     except ModeLost as reason:
-        reached = wavenumbers[np.abs(np.log(wavenumbers / start.k)) <= abs(log(walk.now.k / start.k))]
-        return Path(tuple(_between(solver, walk.segments, reached)), tuple(walk.collisions), reason)
+        return Path(tuple(modes), tuple(walk.collisions), reason)
+    return Path(tuple(modes), tuple(walk.collisions))
 
 
-def _between(solver, segments, wavenumbers):
-    """Modes at `wavenumbers`, within the walk that visited `segments` (lists of modes without a collision).
+class Walk:
+    """The state of a walk along k: the last two modes, the step in log k, the collisions so far.
 
-    Where many are asked for between two nodes, a few of them become nodes first; the others then share
-    factorisations.
+    `segments` lists the modes visited, a new list after each collision. Where steps get short the walk goes on with
+    the solver `closer`, if there is one.
     """
-    found, gaps = {}, {}
-    for k, (nodes, index) in zip(wavenumbers.tolist(), _intervals(segments, wavenumbers), strict=True):
-        exact = [node for node in nodes[index: index + 2] if node.k == k]
-        if exact or len(nodes) == 1:
-            found[k] = exact[0] if exact else _Walk(solver, nodes[0]).to(k)
-        else:
-            gaps.setdefault((id(nodes), index), (nodes, index, []))[2].append(k)
-    first, second = [], []
-    for nodes, index, inside in gaps.values():
-        coarse = inside if len(inside) <= _MANY else inside[:: int(_STRIDE * len(inside) ** 0.5)]
-        first += [(nodes, index, [k]) for k in coarse]
-    found |= _refined(solver, first)
-    for nodes, _, inside in gaps.values():
-        finer = sorted([*nodes, *(found[k] for k in inside if k in found)], key=lambda node: node.k)
-        missing, rest = [k for k in inside if k not in found], {}
-        for k, (_, place) in zip(missing, _intervals([finer], missing), strict=True):
-            rest.setdefault(place, []).append(k)
-        second += [(finer, place, ks) for place, ks in rest.items()]
-    found |= _refined(solver, second)
-    return [found[k] for k in wavenumbers.tolist()]
 
-
-def _refined(solver, groups):
-    """{k: mode} for groups (nodes, index, wavenumbers between nodes index and index + 1), refined together.
-
-    Each group shares a factorisation; what does not settle next to its interpolation is walked to.
-    """
-    batches, found = {}, {}
-    for nodes, index, inside in groups:
-        batches.setdefault(max(nodes[index].degree, nodes[index + 1].degree), []).append((nodes, index, inside))
-    for degree, batch in batches.items():
-        guesses = [_interpolate(solver, nodes, index, np.log(inside), degree) for nodes, index, inside in batch]
-        modes = iter(solver.solve_many([inside for *_, inside in batch], guesses, degree))
-        for (nodes, index, inside), (rates, *_) in zip(batch, guesses, strict=True):
-            for k, rate, mode in zip(inside, rates, modes, strict=False):
-                near = mode is not None and abs(mode.rate - rate) < _DRIFT * (abs(rate) + abs(nodes[index].rate - rate))
-                found[k] = mode if near else _Walk(solver, nodes[index]).to(k)
-    return found
-
-
-def _intervals(segments, wavenumbers):
-    """For each wavenumber the segment that contains it, or the one that ends nearest to it, and the node before it."""
-    logs, t = [np.log([node.k for node in nodes]) for nodes in segments], np.log(wavenumbers)
-    outside = np.array([np.maximum(np.maximum(ends.min() - t, t - ends.max()), 0) for ends in logs])
-    places = []
-    for at, which, far in zip(t, outside.argmin(axis=0).tolist(), outside.min(axis=0), strict=True):
-        nodes, ends = segments[which], logs[which]
-        if far:
-            places.append(([min(nodes[0], nodes[-1], key=lambda node, at=at: abs(log(node.k) - at))], 0))
-            continue
-        side = 1 if ends[-1] >= ends[0] else -1
-        index = int(np.searchsorted(side * ends, side * at, side="right")) - 1
-        places.append((nodes, min(max(index, 0), max(len(nodes) - 2, 0))))
-    return places
-
-
-def _interpolate(solver, nodes, index, t, degree):
-    """Rates (cubic, values and slopes of two nodes) and vectors (cubic, four nodes) at log k = t (points,)."""
-    here, there = nodes[index], nodes[index + 1]
-    h = log(there.k / here.k)
-    u = (t - log(here.k)) / h
-    rise = there.rate - here.rate
-    a, b = h * here.k * here.rate_slope - rise, rise - h * there.k * there.rate_slope
-    rates = here.rate + u * rise + u * (1 - u) * (a * (1 - u) + b * u)
-    first = min(max(index - 1, 0), max(len(nodes) - 4, 0))
-    used = nodes[first: first + 4]
-    times = np.array([log(node.k) for node in used])
-    weights = np.array([np.prod([(t - times[j]) / (times[i] - times[j]) for j in range(len(used)) if j != i], axis=0)
-                        for i in range(len(used))])
-    vectors = [transfer(solver, (node.degree, node.x, node.y), degree) for node in used]
-    return rates, *(_blend(weights, rows, index - first) for rows in zip(*vectors, strict=True))
-
-
-def _blend(weights, vectors, reference):
-    """Weighted sums (points, size) of eigenvectors, each first given the scale of the one at `reference`."""
-    base = vectors[reference]
-    size = np.vdot(base, base)
-    return weights.T @ np.array([size / np.vdot(base, vector) * vector for vector in vectors])
-
-
-def survey(solver, start, end, step):
-    """Yield the modes that a walk from `start` to wavenumber `end` visits, at most `step` apart in log k."""
-    walk = _Walk(solver, start, step)
-    walk.grid = np.geomspace(start.k, end, max(2, int(abs(log(end / start.k)) / _GRID)))
-    solver.prepare(walk.grid)
-    for _ in walk.steps(end):
-        yield walk.now
-
-
-class _Walk:
-    """The state of a walk along k: the last two modes, the step in log k, the collisions so far."""
-
-    def __init__(self, solver, start, largest=_LARGEST_STEP):
-        self.solver = solver
+    def __init__(self, solver, start, closer=None):
+        self.solver, self.closer = solver, closer
         self.before, self.now = None, start
-        self.step, self.largest = min(_FIRST_STEP, largest), largest
+        self.step, self.shortest = _FIRST_STEP, (_FIRST_STEP, start.k)
         self.collisions = []
         self.segments = [[start]]
-        self.grid = None  # rising wavenumbers to land on, where functions of k are known beforehand
+        self._attempts, self._blind, self._behind = 0, 0, start.k
 
     def to(self, k):
-        for _ in self.steps(k):
-            pass
+        """Step to wavenumber k."""
+        attempts, behind = 0, self.now.k
+        while gap := log(k / self.now.k):
+            if attempts and attempts % _STRETCH == 0:
+                if abs(log(self.now.k / behind)) * (_STEPS - attempts) < abs(gap) * _STRETCH:
+                    raise self._lost(f"{_STEPS} steps do not reach k = {k:g}", StepsExhausted)
+                behind = self.now.k
+            attempts += 1
+            self._watch()
+            self._advance(k if abs(gap) <= self.step else self.now.k * exp(copysign(self.step, gap)))
         return self.now
 
-    def steps(self, k):
-        """Step to wavenumber k, pausing after every attempt that moved."""
-        behind, blind = self.now.k, 0
-        for attempt in range(_STEPS):
-            gap, last = log(k / self.now.k), self.now
-            if gap == 0:
-                return
-            if attempt and attempt % _STRETCH == 0:
-                if abs(log(last.k / behind)) * (_STEPS - attempt) < abs(gap) * _STRETCH:
-                    break
-                behind = last.k
-            blind = 0 if self.solver.resolves(last) else blind + 1
-            if blind > _BLIND:
-                raise self._lost(f"degree {last.degree} does not resolve it any more", StepsExhausted)
-            self._advance(k if abs(gap) <= self.step else self._land(self.now.k * exp(copysign(self.step, gap))))
-            if self.now is not last:
-                yield
-        raise self._lost(f"{_STEPS} steps do not reach k = {k:g}", StepsExhausted)
+    def beyond(self, k):
+        """Step on until wavenumber k lies behind, by the same steps whichever it is."""
+        side = copysign(1.0, log(k / self.segments[0][0].k))
+        if self.solver.flow.functions:
+            self.solver.prepare(np.array(_ladder(self.now.k, k)))
+        while side * log(k / self.now.k) > 0:
+            if self._attempts and self._attempts % _STRETCH == 0:
+                if abs(log(self.now.k / self._behind)) < _PACE:
+                    raise self._lost(f"{_STRETCH} steps took it from k = {self._behind:.6g} no further", StepsExhausted)
+                self._behind = self.now.k
+            self._attempts += 1
+            self._watch()
+            self._advance(_rung(self.now.k, side * self.step))
 
-    def _land(self, k):
-        """The last grid point before k, if that is not much nearer, else k."""
-        if self.grid is None:
-            return k
-        before = float(self.grid[max(np.searchsorted(self.grid, k) - 1, 0)])
-        return before if (self.now.k * k) ** 0.5 < before < k else k
+    def _watch(self):
+        """Give up where the largest degree has not resolved the mode for long."""
+        self._blind = 0 if self.solver.resolves(self.now) else self._blind + 1
+        if self._blind > _BLIND:
+            raise self._lost(f"degree {self.now.degree} does not resolve it any more", StepsExhausted)
 
     def _advance(self, k):
         """Take one step to k, or shorten the step, or cross a collision."""
@@ -254,13 +127,24 @@ class _Walk:
             self._accept(mode)
             miss = abs(mode.rate - rate) / (abs(mode.rate) + abs(mode.k * mode.rate_slope)) + 1e-12
             factor = min(2.0, max(0.5, (_PREDICTION / miss) ** 0.25))
-            self.step = min(self.largest, max(length, self.step if length < self.step else 0) * factor)
+            self.step = min(_LARGEST_STEP, max(length, self.step if length < self.step else 0) * factor)
             return
         self.step = length / 3
-        if self.step < 0.02 and self._cross(k):
+        if self.step < self.shortest[0]:
+            self.shortest = self.step, self.now.k
+        if self.step < _CLOSE and self.closer:
+            self._look_closer()
+            return
+        if self.step < _CLOSE and self._cross(k):
             return
         if self.step < _SMALLEST_STEP:
             raise self._lost(f"no mode overlaps its neighbour at k = {k:.6g}")
+
+    def _look_closer(self):
+        """Go on from here with full accuracy."""
+        self.solver, self.closer = self.closer, None
+        now = self.solver.solve(self.now.k, self.now.rate, (self.now.degree, self.now.x, self.now.y))
+        self.segments[-1][-1] = self.now = now
 
     def _trusted(self, mode):
         """Whether the mode is resolved well enough to be followed, if not to the tolerance."""
@@ -336,7 +220,6 @@ class _Walk:
         self.step = abs(log(beyond / now.k))
         return True
 
-
     def _pin(self, pair, becomes):
         """Place the collision by Newton on Im(rate)^2 = 0, from the complex side, ever nearer to it."""
         for nearness in (1e-3, 1e-5):
@@ -349,6 +232,20 @@ class _Walk:
         k = pair.k - pair.rate.imag / (2 * pair.rate_slope.imag)
         rate = pair.rate.real + (k - pair.k) * pair.rate_slope.real
         return Collision(k, float(self.solver.width(k) * rate), becomes)
+
+
+def _rung(k, step):
+    """The wavenumber a step in log k away, or the last rung of the ladder before it if that is not much nearer."""
+    ahead = k * exp(step)
+    index = log(ahead) / _RUNG
+    rung = exp(_RUNG * (floor(index) if step > 0 else ceil(index)))
+    return rung if abs(log(rung / k)) > 0.5 * abs(step) and (rung - k) * step > 0 else ahead
+
+
+def _ladder(start, end):
+    """The rungs from a little before `start` to a little behind `end`."""
+    low, high = (floor(log(side(start, end)) / _RUNG) for side in (min, max))
+    return [exp(_RUNG * index) for index in range(low - 1, high + 3)]
 
 
 def _extrapolate(now, before, ratio):

@@ -12,11 +12,12 @@ from typing import Any
 import numpy as np
 
 from . import status
+from .dense import finite_rates
 from .relation import dispersion
 from .rheology import condition, ill_posed, short_wave_growth
 from .solver import DEGREES as RUNGS
 from .solver import Assembly, Solver
-from .spectra import Spectrum, finite_rates
+from .spectra import Spectrum
 from .threads import one_thread
 
 POINTS = 201
@@ -86,7 +87,7 @@ def well_posedness(flow, points=POINTS):
     False
     """
     parts, strips = [], []
-    for layer in flow.layers(_numbers(flow)):
+    for layer in flow.layers(numbers(flow)):
         s = (1 - np.cos(np.pi * np.arange(points) / (points - 1))) / 2
         height = layer.height(s)
         ratio, alpha, eta, rho = _coefficients(layer, s)
@@ -96,6 +97,13 @@ def well_posedness(flow, points=POINTS):
         strips += _strips(layer, s, ill)
     names, *arrays = (np.concatenate(column) for column in zip(*parts, strict=True))
     return WellPosedness(flow, tuple(names.tolist()), *arrays, tuple(strips))
+
+
+def ill_posed_somewhere(flow, points=POINTS):
+    """Whether some layer of the flow is ill posed at one of as many heights."""
+    s = (1 - np.cos(np.pi * np.arange(points) / (points - 1))) / 2
+    coefficients = (_coefficients(layer, s) for layer in flow.layers(numbers(flow)))
+    return any(np.any(ill_posed(ratio, alpha)) for ratio, alpha, *_ in coefficients)
 
 
 @one_thread
@@ -210,7 +218,7 @@ def _leading(solver, k, degree):
     return float(solver.width(k) * finite_rates(solver, degree, solver.symbols(k))[0].real)
 
 
-def _numbers(flow):
+def numbers(flow):
     """Stand-ins for the symbols that a flow's layers may use: heights only, which C does not depend on."""
     return SimpleNamespace(k=1.0, rate=0.0, **dict.fromkeys((*flow.functions, *flow.surfaces), 1.0))
 

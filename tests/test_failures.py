@@ -16,9 +16,9 @@ from scipy.linalg import eig
 from stability import continuation, dispersion, flows, k_max
 from stability.bvp import Problem
 from stability.continuation import bounded_maximum, continue_in_k
+from stability.dense import finite_rates
 from stability.layer import Layer, Profile
 from stability.solver import Solver
-from stability.spectra import finite_rates
 from stability.thesis import thesis_setting
 from stability.wavy_wall import response
 

@@ -145,14 +145,14 @@ def test_points_that_share_a_factorisation_are_as_good_as_any(flow, low, high):
                                          (flows.Dune(), np.geomspace(0.05, 5.0, 200)),
                                          (flows.Poiseuille(), np.linspace(0.8, 1.1, 100))])
 def test_points_that_share_a_factorisation_settle(flow, k, monkeypatch):
-    """No point of a smooth sweep has to be walked to on its own, after the two walks to and through the sweep."""
+    """No point of a smooth sweep has to be walked to on its own, after the walks up and down from its start."""
     starts = []
-    initialise = tracking._Walk.__init__
+    initialise = tracking.Walk.__init__
 
     def counted(self, *arguments):
         starts.append(arguments)
         initialise(self, *arguments)
 
-    monkeypatch.setattr(tracking._Walk, "__init__", counted)
+    monkeypatch.setattr(tracking.Walk, "__init__", counted)
     dispersion(flow, k)
     assert len(starts) <= 2

@@ -5,8 +5,8 @@ import pytest
 from samples import reference
 
 from stability import NotResolved, ParameterError, flows, spectrum
+from stability.dense import finite_rates
 from stability.solver import Solver
-from stability.spectra import finite_rates
 
 
 @pytest.mark.parametrize(("flow", "k"), [(flows.Vortex(), 2.0), (flows.Vortex(Fr2=50.0), 10.0), (flows.Dune(), 1.0)])

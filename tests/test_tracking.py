@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 import references
 
-from stability import ModeLost, dispersion, flows, relation
-from stability.errors import StepsExhausted
+from stability import ModeLost, dispersion, flows
+from stability.branch import surface_branch, surface_mode
 from stability.solver import Solver
-from stability.tracking import Path, _Walk, follow, surface_mode
+from stability.tracking import Walk, follow
 
 
 def test_forwards_and_backwards_meet():
@@ -102,13 +102,13 @@ def test_a_thick_ill_posed_bed_is_followed_without_jumps(shields, k):
 
 
 def test_without_the_check_of_slopes_it_would_jump(monkeypatch):
-    monkeypatch.setattr("stability.tracking._BEND", 10.0)
     flow = flows.Dune(shields=10.0, Re=0.3)
-    ends = [dispersion(flow, grid).sigma[-1] for grid in ([8.1], np.geomspace(1e-3, 8.1, 60))]
-    assert abs(ends[0] - ends[1]) > 100
+    right = dispersion(flow, 8.1).sigma[0]
+    monkeypatch.setattr("stability.tracking._BEND", 10.0)
+    assert abs(dispersion(flow, 8.1).sigma[0] - right) > 100
 
 
-class Paced(_Walk):
+class Paced(Walk):
     """A walk whose attempts all succeed with a given step in log k, at the largest degree."""
 
     def __init__(self, solver, pace):
@@ -147,14 +147,89 @@ def test_a_walk_ends_where_the_largest_degree_does_not_suffice():
     assert rough.to(1e3).k == 1e3
 
 
-def test_what_exhausts_a_rough_walk_is_not_walked_again(monkeypatch):
-    """The way to the first wavenumber is walked once more, closely, only where the rough walk met something."""
-    solvers = []
+def test_a_walk_without_an_end_gives_up_where_it_hardly_moves():
+    walk = Paced(Solver(flows.Dune()), lambda attempt: 0.05 if attempt <= 100 else 1e-4)
+    with pytest.raises(ModeLost, match="100 steps took it from k = .* no further"):
+        walk.beyond(1e3)
+    assert walk.attempts == 200
 
-    def follow(solver, start, wavenumbers):
-        solvers.append(solver.tolerance)
-        return Path((), (), StepsExhausted("too many steps"))
 
-    monkeypatch.setattr(relation, "follow", follow)
-    assert dispersion(flows.Dune(), 1.0, strict=False).lost == {1.0: "too many steps"}
-    assert solvers == [1e-4]
+def test_what_is_lost_beyond_takes_nothing_along(monkeypatch):
+    """Wavenumbers below the one at which the walk ends keep their mode, those above get the reason."""
+    flow = flows.Dune(Re=0.3)
+    alone = dispersion(flow, 1.0)
+
+    def advance(self, k, usual=Walk._advance):
+        if self.now.k > 2:
+            raise self._lost("it is too far")
+        usual(self, k)
+
+    monkeypatch.setattr(Walk, "_advance", advance)
+    found = dispersion(flow, [1.0, 5.0], strict=False)
+    assert abs(found.sigma[0] - alone.sigma[0]) <= found.error[0] + alone.error[0]
+    assert list(found.lost) == [5.0]
+    assert "it is too far" in found.lost[5.0]
+
+
+TWO_LAYERS = [(0.2, 5.0, 1000.0, 5.0, -0.128570090578 - 4.778148706551j), (0.1, 2.0, 1000.0, 5.0, None),
+              (0.5, 5.0, 1000.0, 2.0, None), (0.5, 5.0, 1000.0, 5.0, None), (0.2, 10.0, 1000.0, 2.0, None),
+              (0.2, 10.0, 1000.0, 5.0, None)]
+
+
+@pytest.mark.parametrize(("viscosity_ratio", "depth_ratio", "Re", "k", "sigma"), TWO_LAYERS)
+def test_a_wavenumber_alone_has_the_mode_that_it_has_in_company(viscosity_ratio, depth_ratio, Re, k, sigma):
+    """At these k another mode lies within 3 % of the long-wave law by chance; the value by 280 steps from k = 1e-5."""
+    flow = flows.TwoLayerCouette(viscosity_ratio=viscosity_ratio, depth_ratio=depth_ratio, Re=Re)
+    alone, among = dispersion(flow, k), dispersion(flow, [1e-5, 0.1, 0.5, 1.0, k])
+    assert abs(alone.sigma[0] - among.sigma[-1]) <= alone.error[0] + among.error[-1]
+    if sigma:
+        assert alone.sigma[0] == pytest.approx(sigma, abs=1e-11)
+
+
+def test_a_sweep_loses_nothing_that_is_found_alone():
+    """An ill-posed roll wave that is followed in thousands of small steps."""
+    flow = flows.RollWave(slope_deg=39.192999851735976, Fr2=0.2724877178938599, mu1=0.7146392435132589,
+                          mu2=0.8238277485284187)
+    alone, among = dispersion(flow, 2.498), dispersion(flow, [0.1, 2.498, 30.0], strict=False)
+    assert abs(alone.sigma[0] - among.sigma[1]) <= alone.error[0] + among.error[1]
+
+
+def random_flows(count, seed):
+    """(flow, wavenumbers) over all scenes, far into the ranges where modes meet."""
+    rng = np.random.default_rng(seed)
+
+    def log(low, high):
+        return float(np.exp(rng.uniform(np.log(low), np.log(high))))
+
+    makers = (lambda: flows.Vortex(slope_deg=rng.uniform(5, 45), Fr2=log(1e-2, 50)),
+              lambda: flows.Dune(shields=rng.uniform(1.02, 5), mu1=rng.uniform(0.2, 0.7), Re=log(1e-2, 1e4),
+                                 depth=rng.choice([np.inf, 2.0, 10.0])),
+              lambda: flows.RollWave(slope_deg=rng.uniform(21.2, 32.4), Fr2=log(0.01, 50)),
+              lambda: flows.Film(Re=log(0.1, 1e4), slope_deg=log(0.01, 100), We=rng.choice([0.0, 0.1])),
+              lambda: flows.TwoLayerCouette(viscosity_ratio=log(0.05, 20), depth_ratio=log(0.1, 10), Re=log(1, 2e3),
+                                            density_ratio=rng.uniform(1, 5), tension=rng.choice([0.0, 0.1])),
+              lambda: flows.Poiseuille(Re=log(10, 2e4)), lambda: flows.Couette(Re=log(10, 2e3)))
+    for index in range(count):
+        yield makers[index % len(makers)](), np.exp(rng.uniform(np.log(0.01), np.log(8), 3))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_mode_does_not_depend_on_how_it_is_asked_for(seed):
+    """Each k alone, in sweeps of other spacings and reversed: the same mode, or the same refusal."""
+    for flow, wavenumbers in random_flows(14, seed):
+        sweeps = (wavenumbers, wavenumbers[::-1], np.concatenate((wavenumbers, np.geomspace(5e-3, 9.0, 12))),
+                  np.concatenate((wavenumbers, np.linspace(0.02, 12.0, 40))))
+        for k in wavenumbers.tolist():
+            alone = dispersion(flow, k, strict=False)
+            for sweep in sweeps:
+                among = dispersion(flow, sweep, strict=False)
+                assert (k in among.lost) == (k in alone.lost), (flow, k)
+                for mode in (mode for mode in among.modes if mode.k == k):
+                    assert abs(mode.sigma - alone.sigma[0]) <= mode.error + alone.error[0], (flow, k)
+
+
+def test_the_surface_mode_starts_where_its_law_has_held_for_long():
+    branch = surface_branch(Solver(flows.Film()))
+    ratios = [abs(branch.at([k])[0][k].sigma / flows.Film().long_wave(k) - 1)
+              for k in (branch.start.k, branch.start.k / 5)]
+    assert ratios[1] < 0.8 * ratios[0] < 0.03

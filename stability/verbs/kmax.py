@@ -1,7 +1,7 @@
 """stability kmax: the fastest growing wavenumber, over a parameter."""
 
-from ..errors import StabilityError
-from ..optimum import Optima, Optimum, check_surface_mode, k_max_sweep
+from ..errors import ParameterError, StabilityError
+from ..optimum import MODES, Optima, Optimum, k_max_sweep
 from ..status import INTERRUPTED
 from .common import SPEC, accuracy_options, add_verb, collect, flow_of, options_of, report, sweep_of
 from .methods import method_of, method_options, settings_of
@@ -9,22 +9,28 @@ from .methods import method_of, method_options, settings_of
 
 def add(verbs):
     add_verb(verbs, "kmax", _run, "the fastest growing wavenumber, over a parameter",
-             "stability kmax dune --over Re=0.1:1e4:41 --plot kmax.png", _over_option, method_options,
-             accuracy_options)
+             "stability kmax dune --over Re=0.1:1e4:41 --plot kmax.png", _over_option, _mode_option,
+             method_options, accuracy_options)
 
 
 def _over_option(verb):
     verb.add_argument("--over", metavar="NAME=SPEC", help=f"parameter to sweep and its values: {SPEC}")
 
 
+def _mode_option(verb):
+    verb.add_argument("--mode", metavar="MODE", help=f"one of {', '.join(MODES)}: the slow surface mode alone "
+                      "(default of flows that are ill posed), or the fastest of all modes (default elsewhere)")
+
+
 def _run(arguments):
     flow, options = flow_of(arguments), options_of(arguments)
-    check_surface_mode(flow)
+    if arguments.mode and arguments.mode not in MODES:
+        raise ParameterError(f"--mode: must be one of {', '.join(MODES)} (got {arguments.mode!r})")
     name, sweep = sweep_of(arguments, flow)
     bvps = [method_of(arguments, one, options["tolerance"]) for one in sweep]
 
     def compute():
-        optima = k_max_sweep(sweep, **options) if bvps[0] is None else map(_bounded, sweep, bvps)
+        optima = k_max_sweep(sweep, mode=arguments.mode, **options) if bvps[0] is None else map(_bounded, sweep, bvps)
         found = collect(arguments, optima, len(sweep),
                         lambda done: [Optimum(one, (), INTERRUPTED) for one in sweep[done:]])
         return Optima(flow, name, tuple(found), arguments.method)

@@ -1,0 +1,266 @@
+"""One mode as a function of k, the same whoever asks: where it starts, and what is read off between its nodes.
+
+A branch is the mode that a walk visits which leads away from its start by steps of its own. The start and the
+steps depend on the flow alone, never on the wavenumbers asked for: those lie between two nodes of the walk, and
+are refined from their interpolation. So a wavenumber asked for alone has the mode that it has in any company.
+
+The surface mode starts in long waves, where it obeys the limit that its flow states; the leading mode starts at one
+wavenumber that is the flow's own.
+"""
+
+from math import copysign, log
+
+import numpy as np
+
+from .errors import ModeLost
+from .solver import transfer
+from .tracking import Walk
+
+_ROUGH = 1e-4  # tolerance of the walk; what is asked for is refined to full accuracy
+_FIRST, _FACTOR, _TRIES = 0.04, 5.0, 30  # wavenumbers at which the long-wave limit is sought: each a part of the last
+_AGREEMENT = 0.03  # of the surface mode with its long-wave limit, in value and in slope
+_CONFIRMED = 3  # wavenumbers in a row, each a part of the last, at which it must agree
+_CLOSER = 0.8, 1e-3  # factor by which each must be nearer to the limit than the one before, and what is near enough
+_FEW = 3  # wavenumbers that are refined one by one
+_MANY = 8  # wavenumbers between two nodes that are refined one by one
+_STRIDE = 2.0  # of n more than these every _STRIDE sqrt(n)-th becomes a node first
+_DRIFT = 0.01  # largest relative difference of a refined rate from its interpolation
+_ASTRAY = 0.5  # largest deviation of the overlap with the next node from 1
+
+
+class Branch:
+    """The mode `start` followed to any wavenumber; `solver` refines what is asked for, `rough` walks.
+
+    `lost` maps a side, 1 for rising k and -1 for falling k, to the reason why the walk ended there.
+    """
+
+    def __init__(self, solver, start, rough=None):
+        self.solver, self.start = solver, start
+        rough = rough or solver.rough(_ROUGH)
+        self._walks = {side: Walk(rough, start, solver) for side in (1, -1)}
+        self._lifted = {}
+        self.lost = {}
+
+    @property
+    def collisions(self):
+        """The collisions met so far, by rising k."""
+        return tuple(sorted((one for walk in self._walks.values() for one in walk.collisions), key=lambda one: one.k))
+
+    @property
+    def segments(self):
+        """Lists of nodes by rising k, without a collision inside."""
+        down, up = self._walks[-1].segments, self._walks[1].segments
+        whole = [*down[0][:0:-1], *up[0]]
+        return [*(part[::-1] for part in down[:0:-1]), whole, *up[1:]]
+
+    def reach(self, k):
+        """Walk until k lies behind; return whether it does."""
+        side = self._side(k)
+        walk = self._walks[side]
+        if side * log(k / walk.now.k) > 0 and side not in self.lost:
+            try:
+                walk.beyond(k)
+            except ModeLost as reason:
+                self.lost[side] = reason
+        return side * log(k / walk.now.k) <= 0
+
+    def why_lost(self, k):
+        """Why the walk does not reach k."""
+        return str(self.lost[self._side(k)])
+
+    def at(self, wavenumbers):
+        """Return {k: mode} at the wavenumbers reached, and {k: reason} at the others."""
+        wavenumbers = np.asarray(wavenumbers, dtype=float).tolist()
+        for k in (min(wavenumbers), max(wavenumbers)):
+            self.reach(k)
+        reached = [k for k in wavenumbers if self.reach(k)]
+        found, lost = {}, {k: self.why_lost(k) for k in wavenumbers if not self.reach(k)}
+        if reached:
+            self.solver.prepare(np.array(reached))
+        for k, mode in (self._singly(reached) if len(reached) <= _FEW else self._together(reached)).items():
+            if isinstance(mode, ModeLost):
+                lost[k] = str(mode)
+            else:
+                found[k] = mode
+        return found, lost
+
+    def _side(self, k):
+        return int(copysign(1, log(k / self.start.k)))
+
+    def _singly(self, wavenumbers):
+        found = {}
+        for k, (nodes, index) in zip(wavenumbers, _intervals(self.segments, wavenumbers), strict=True):
+            found[k] = self._between(nodes, index, k)
+        return found
+
+    def _between(self, nodes, index, k):
+        """The mode at k next to its interpolation, or by a walk from the node before; the reason where it is lost."""
+        near = nodes[index]
+        try:
+            if len(nodes) > 1 and k != near.k:
+                degree = max(nodes[index].degree, nodes[index + 1].degree)
+                (rate,), (x,), (y,) = interpolated(self.solver, nodes, index, np.log([k]), degree)
+                mode = self._solved(k, rate, (degree, x, y))
+                if mode and _near(mode, rate, near) and abs(self.solver.overlap(near, mode) - 1) < _ASTRAY:
+                    return mode
+            mode = self._solved(near.k, near.rate, (near.degree, near.x, near.y))
+            return Walk(self.solver, mode or near).to(k)
+        except ModeLost as reason:
+            return reason
+
+    def _solved(self, k, rate, vectors):
+        try:
+            return self.solver.solve(k, rate, vectors)
+        except ModeLost:
+            return None
+
+    def _together(self, wavenumbers):
+        """Modes at many wavenumbers: where there are many between two nodes, a few of them become nodes first; the
+        others then share factorisations."""
+        found, gaps = {}, {}
+        for k, (nodes, index) in zip(wavenumbers, _intervals(self.segments, wavenumbers), strict=True):
+            exact = [node for node in nodes[index: index + 2] if node.k == k]
+            if exact:
+                found[k] = self._lift(exact[0])
+            elif len(nodes) == 1:
+                found[k] = self._between(nodes, index, k)
+            else:
+                gaps.setdefault((id(nodes[0]), index), (nodes, index, []))[2].append(k)
+        gaps = self._with_lifted(gaps.values())
+        first, second = [], []
+        for nodes, index, inside in gaps:
+            coarse = inside if len(inside) <= _MANY else inside[:: int(_STRIDE * len(inside) ** 0.5)]
+            first += [(nodes, index, [k]) for k in coarse]
+        found |= self._refined(first)
+        for nodes, _, inside in gaps:
+            known = (found[k] for k in inside if k in found and not isinstance(found[k], ModeLost))
+            finer = sorted([*nodes, *known], key=lambda node: node.k)
+            missing, rest = [k for k in inside if k not in found], {}
+            for k, (_, place) in zip(missing, _intervals([finer], missing), strict=True):
+                rest.setdefault(place, []).append(k)
+            second += [(finer, place, ks) for place, ks in rest.items()]
+        return found | self._refined(second)
+
+    def _with_lifted(self, gaps):
+        """The gaps (nodes, index, wavenumbers) with nodes of full accuracy at their ends, and no others than such."""
+        for nodes, index, _ in gaps:
+            for node in nodes[index: index + 2]:
+                self._lift(node)
+        found = []
+        for nodes, index, inside in gaps:
+            good = [self._lifted[node.k] for node in nodes if node.k in self._lifted]
+            found.append((good, [node.k for node in good].index(nodes[index].k), inside))
+        return found
+
+    def _lift(self, node):
+        if node.k not in self._lifted:
+            last = next(reversed(self._lifted.values()), node)
+            degree = max(node.degree, self.solver.next_degree(last))
+            vectors = (degree, *transfer(self.solver, (node.degree, node.x, node.y), degree))
+            self._lifted[node.k] = self._solved(node.k, node.rate, vectors) or node
+        return self._lifted[node.k]
+
+    def _refined(self, groups):
+        """{k: mode} for groups (nodes, index, wavenumbers between nodes index and index + 1), refined together.
+
+        Each group shares a factorisation; what does not settle next to its interpolation is walked to.
+        """
+        batches, found = {}, {}
+        for nodes, index, inside in groups:
+            batches.setdefault(max(nodes[index].degree, nodes[index + 1].degree), []).append((nodes, index, inside))
+        for degree, batch in batches.items():
+            guesses = [interpolated(self.solver, nodes, index, np.log(inside), degree)
+                       for nodes, index, inside in batch]
+            modes = iter(self.solver.solve_many([inside for *_, inside in batch], guesses, degree))
+            for (nodes, index, inside), (rates, *_) in zip(batch, guesses, strict=True):
+                for k, rate, mode in zip(inside, rates, modes, strict=False):
+                    near = mode is not None and _near(mode, rate, nodes[index])
+                    found[k] = mode if near else self._between(nodes, index, k)
+        return found
+
+
+def _near(mode, rate, node):
+    """Whether a mode is where the interpolation of its rate from `node` and the next one expects it."""
+    return abs(mode.rate - rate) < _DRIFT * (abs(rate) + abs(node.rate - rate))
+
+
+def surface_branch(solver):
+    """Return the branch of the slow surface mode of `solver.flow`; raise ModeLost where it has no long-wave limit."""
+    return Branch(solver, surface_mode(solver.rough(_ROUGH)))
+
+
+def surface_mode(solver, k=_FIRST):
+    """Return the slow surface mode at a wavenumber <= k from which on it obeys its long-wave limit.
+
+    Value and logarithmic slope must agree there, and again at a fifth and a twenty-fifth of it, ever closer: another
+    mode can meet one of them by chance.
+    """
+    tried = k / _FACTOR ** np.arange(_TRIES)
+    limits, ahead = np.split(solver.flow.long_wave(np.concatenate((tried, 1.01 * tried))), 2)
+    exponents = np.log(ahead / limits) / log(1.01)
+    agreeing = []
+    for k, limit, exponent in zip(tried.tolist(), limits, exponents, strict=True):
+        mode, distance = _glance(solver, k, limit, exponent)
+        if agreeing and not distance < max(_CLOSER[0] * agreeing[-1][1], _CLOSER[1]):
+            agreeing = []
+        if distance < _AGREEMENT:
+            agreeing.append((mode, distance, limit, exponent))
+        if len(agreeing) == _CONFIRMED:
+            start, _, *law = agreeing[0]
+            mode = solver.solve(start.k, start.rate, (start.degree, start.x, start.y))
+            if _distance(mode, *law) < _AGREEMENT:
+                return mode
+            agreeing = []
+    raise ModeLost(f"{solver.flow}: no mode obeys the long-wave limit down to k = {k:.1e}")
+
+
+def _glance(solver, k, limit, exponent):
+    """The mode next to the long-wave limit, and how far from it, relative; None and infinity where none settles."""
+    try:
+        mode = solver.solve(k, limit / solver.width(k), glance=True)
+    except ModeLost:
+        return None, np.inf
+    return mode, _distance(mode, limit, exponent)
+
+
+def _distance(mode, limit, exponent):
+    return max(abs(mode.sigma / limit - 1), abs(mode.k * mode.slope / mode.sigma - exponent))
+
+
+def _intervals(segments, wavenumbers):
+    """For each wavenumber the segment that contains it, or the one that ends nearest to it, and the node before it."""
+    logs, t = [np.log([node.k for node in nodes]) for nodes in segments], np.log(wavenumbers)
+    outside = np.array([np.maximum(np.maximum(ends.min() - t, t - ends.max()), 0) for ends in logs])
+    places = []
+    for at, which, far in zip(t, outside.argmin(axis=0).tolist(), outside.min(axis=0), strict=True):
+        nodes, ends = segments[which], logs[which]
+        if far:
+            places.append(([min(nodes[0], nodes[-1], key=lambda node, at=at: abs(log(node.k) - at))], 0))
+            continue
+        index = int(np.searchsorted(ends, at, side="right")) - 1
+        places.append((nodes, min(max(index, 0), max(len(nodes) - 2, 0))))
+    return places
+
+
+def interpolated(solver, nodes, index, t, degree):
+    """Rates (cubic, values and slopes of two nodes) and vectors (cubic, four nodes) at log k = t (points,)."""
+    here, there = nodes[index], nodes[index + 1]
+    h = log(there.k / here.k)
+    u = (t - log(here.k)) / h
+    rise = there.rate - here.rate
+    a, b = h * here.k * here.rate_slope - rise, rise - h * there.k * there.rate_slope
+    rates = here.rate + u * rise + u * (1 - u) * (a * (1 - u) + b * u)
+    first = min(max(index - 1, 0), max(len(nodes) - 4, 0))
+    used = nodes[first: first + 4]
+    times = np.array([log(node.k) for node in used])
+    weights = np.array([np.prod([(t - times[j]) / (times[i] - times[j]) for j in range(len(used)) if j != i], axis=0)
+                        for i in range(len(used))])
+    vectors = [transfer(solver, (node.degree, node.x, node.y), degree) for node in used]
+    return rates, *(_blend(weights, rows, index - first) for rows in zip(*vectors, strict=True))
+
+
+def _blend(weights, vectors, reference):
+    """Weighted sums (points, size) of eigenvectors, each first given the scale of the one at `reference`."""
+    base = vectors[reference]
+    size = np.vdot(base, base)
+    return weights.T @ np.array([size / np.vdot(base, vector) * vector for vector in vectors])

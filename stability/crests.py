@@ -1,0 +1,236 @@
+"""Where growth rates are largest over k: every crest of every mode that matters.
+
+The surface mode is followed from long waves to the end of the search, and a crest lies wherever the slope of its
+growth turns from positive to negative. Other modes are looked for at neighbouring wavenumbers: all that decay no
+faster than `_DEPTH` times the waves travel are taken from dense spectra whose completeness is checked, and followed
+to both neighbours; a crest lies where the slope turns on the way.
+"""
+
+from contextlib import suppress
+from dataclasses import dataclass
+from itertools import pairwise
+from math import ceil, exp, log
+from typing import Any
+
+import numpy as np
+
+from . import chebyshev
+from .branch import surface_branch
+from .errors import ModeLost
+from .listing import FIRST, near_neutral, same
+from .status import is_resolved
+from .tracking import Walk
+from .wellposed import numbers
+
+ROUGH = 1e-4  # tolerance of the look: small systems find the brackets
+
+_STEP = 0.3  # of the look at other modes, in log k
+_DEPTH = 0.05  # damping of the modes that are followed, as a wave speed over the spread of speeds
+_POINTS = 32  # at which that spread is taken
+_DECADE = 10.0
+_DECADES = 16  # below the search in which the long-wave regime is sought
+_POWERS = 0.9, 2.5  # of k, between which growth lies in long waves
+_REGIME = 0.02  # change of the local power of the long-wave law in a decade that its own regimes differ by
+_UNEVEN = 0.2  # departure of growth between two nodes from the mean of its end slopes beyond which they get a middle
+_FINEST = 6  # halvings of a stretch between two nodes
+_ITERATIONS = 40
+_SETTLED = 1e-15  # relative step in k
+_APART = 1e-5  # relative distance of two k from which the slopes there give the curvature
+_NOISE = 5.0  # times its error that a difference or slope of growth must have to be judged by
+_SCATTER = 4.0  # error of a slope in units of its change when the vectors are refined once more (measured)
+_OVERLAP = 0.3  # largest deviation of the overlap of one step from 1
+_K_TOLERANCE = 1e-8  # relative error of k_max that is accepted as resolved whatever the tolerance of sigma
+
+
+@dataclass(frozen=True)
+class Maximum:
+    """A local maximum of the growth rate: `error` bounds the absolute error of k, `status` says whether it is small."""
+
+    k: float
+    error: float
+    mode: Any
+    status: str
+
+    @property
+    def growth_rate(self) -> float:
+        return self.mode.growth_rate
+
+
+@dataclass(frozen=True)
+class Look:
+    """What was seen along k: `brackets`, pairs of modes with a crest in between; `ends`, modes at both ends of the
+    search; `trouble`, why something may have been overlooked, or None."""
+
+    brackets: list
+    ends: tuple[list, list]
+    trouble: str | None
+
+
+def surface_look(solver, low, high):
+    """Look along the surface mode, from where growth is a power of k to k = high; `low` bounds where that is sought.
+
+    Raises ModeLost where there is no such regime.
+    """
+    branch = surface_branch(solver)
+    start = _long_waves(branch, low)
+    reached, rough = branch.reach(high), solver.rough(ROUGH)
+    nodes = [_heard(solver, node) for part in branch.segments for node in part if start <= node.k < high]
+    if reached:
+        nodes.append(branch.at([high])[0][high])
+    brackets = [pair for a, b in pairwise(nodes) for pair in _brackets(rough, a, b)]
+    return Look(brackets, (nodes[:1], nodes[-1:] if reached else []), None if reached else branch.why_lost(high))
+
+
+def look(solver, low, high):
+    """Look at every mode that decays slowly or grows, low <= k <= high, each symmetry class by itself."""
+    parts = [_look(half, low, high) for half in solver.halves]
+    trouble = [part.trouble for part in parts if part.trouble]
+    ends = tuple([mode for part in parts for mode in part.ends[side]] for side in (0, 1))
+    return Look([pair for part in parts for pair in part.brackets], ends, trouble[0] if trouble else None)
+
+
+def _look(solver, low, high):
+    grid = np.geomspace(low, high, 1 + max(1, ceil(log(high / low) / _STEP))).tolist()
+    rough, rung, columns, trouble = solver.rough(ROUGH), FIRST, [], None
+    depth = _depth(solver.flow)
+    for k in grid:
+        try:
+            modes, rung = near_neutral(rough, k, depth(k), rung)
+            columns.append(modes)
+        except ModeLost as reason:
+            trouble = trouble or str(reason)
+            columns.append(None)
+    brackets = [pair for here, there in pairwise(columns) if here is not None and there is not None
+                for nodes in _ways(rough, here, there) for a, b in pairwise(nodes) for pair in _brackets(rough, a, b)]
+    return Look(brackets, (columns[0] or [], columns[-1] or []), trouble)
+
+
+def _depth(flow):
+    """The decay rate, in units of the rates, down to which modes are looked at, as a function of k.
+
+    In terms of wave speeds: `_DEPTH` of the differences of speed, or the thickness of a viscous layer in these units
+    where that is less: no wave speed changes by more within a step.
+    """
+    points = chebyshev.points(_POINTS)
+    bases = [layer.profile(points) for layer in flow.layers(numbers(flow)) if not layer.steady]
+    speed = float(np.ptp(np.concatenate([np.broadcast_to(base.U, points.shape) for base in bases]))) or 1.0
+    viscosity = min(float(np.mean(base.beta / base.rho)) for base in bases)
+    return lambda k: speed * min(_DEPTH, (viscosity / (k * speed)) ** (1 / 3))
+
+
+def _ways(solver, here, there):
+    """Nodes by rising k of every mode followed from one wavenumber to the next, or back where none arrived."""
+    arrived = []
+    for start in here:
+        with suppress(ModeLost, IndexError):
+            walk = Walk(solver, start)
+            arrived.append(walk.to(there[0].k if there else start.k * exp(_STEP)))
+            yield [node for part in walk.segments for node in part]
+    for start in there:
+        if not any(same(start, mode) for mode in arrived):
+            with suppress(ModeLost, IndexError):
+                walk = Walk(solver, start)
+                walk.to(here[0].k if here else start.k * exp(-_STEP))
+                yield [node for part in walk.segments for node in part][::-1]
+
+
+def _heard(solver, node):
+    """The node, computed properly where its slope of growth does not stand out from its error."""
+    if abs(node.slope.real) > _NOISE * node.slope_error:
+        return node
+    return solver.solve(node.k, node.rate, (node.degree, node.x, node.y))
+
+
+def _brackets(solver, left, right, halvings=_FINEST):
+    """Pairs of modes between two nodes with a crest in between, halving what is too uneven to judge by its ends."""
+    a, b = (mode.k * mode.slope.real for mode in (left, right))
+    h, rise = log(right.k / left.k), right.growth_rate - left.growth_rate
+    size = abs(rise) + h * (abs(a) + abs(b))
+    if halvings and abs(rise - h * (a + b) / 2) > _UNEVEN * size and size > _NOISE * (left.error + right.error):
+        with suppress(ModeLost):
+            middle = Walk(solver, left).to((left.k * right.k) ** 0.5)
+            return [*_brackets(solver, left, middle, halvings - 1), *_brackets(solver, middle, right, halvings - 1)]
+    return [(left, right)] if a > 0 >= b else []
+
+
+def may_grow(left, right):
+    """Whether growth between the two ends of a bracket may exceed 0, by generous tangents."""
+    a, b = (mode.k * mode.slope.real for mode in (left, right))
+    h = log(right.k / left.k)
+    return max(left.growth_rate + h * a, right.growth_rate - h * b) > 0
+
+
+def _long_waves(branch, low):
+    """A wavenumber <= low at which, and a decade below, growth is a power of k: no crest lies lower."""
+    k, above = _last_regime(branch.solver.flow, low), None
+    for _ in range(_DECADES // 2):
+        if not branch.reach(k):
+            raise ModeLost(branch.why_lost(k))
+        node = max((node for part in branch.segments for node in part if node.k <= k), key=lambda node: node.k)
+        node = _heard(branch.solver, node)
+        power = node.k * node.slope.real / node.growth_rate if node.growth_rate else 0.0
+        if not _POWERS[0] < power < _POWERS[1]:
+            above = None
+        elif above:
+            return above
+        else:
+            above = node.k
+        k /= _DECADE
+    raise ModeLost(f"{branch.solver.flow}: growth follows no power of k down to k = {k:.1e}")
+
+
+def _last_regime(flow, low):
+    """The largest wavenumber low / 10^j below which the long-wave law keeps its powers of k."""
+    k = low / _DECADE ** np.arange(_DECADES)
+    with np.errstate(all="ignore"):
+        here, ahead = np.split(np.asarray(flow.long_wave(np.concatenate((k, 1.01 * k))), dtype=complex), 2)
+        powers = np.array([np.log(np.abs(part(ahead) / part(here))) / log(1.01) for part in (np.real, np.imag)])
+    powers = np.where(np.isfinite(powers), powers, 0.0)
+    changed = np.flatnonzero(np.any(np.abs(np.diff(powers, axis=1)) > _REGIME, axis=0))
+    return float(k[changed[-1] + 1 if len(changed) else 0])
+
+
+def crest(solver, left, right):
+    """The `Maximum` between two modes that bracket it: secants of the analytic slope, kept inside the bracket."""
+    low, high, now, scatter = left, right, min(left, right, key=lambda end: abs(end.slope.real)), 0.0
+    curvature, k = (right.slope.real - left.slope.real) / (right.k - left.k), _hermite(left, right)
+    for _ in range(_ITERATIONS):
+        before, (now, again) = now, _moved(solver, low if k - low.k < high.k - k else high, k)
+        low, high = (now, high) if now.slope.real > 0 else (low, now)
+        if abs(now.k - before.k) > _APART * now.k:
+            curvature = (now.slope.real - before.slope.real) / (now.k - before.k)
+        else:
+            scatter = max(scatter, _SCATTER * abs(again - now.slope))
+        step, noise = -now.slope.real / curvature, now.slope_error + scatter
+        if scatter and abs(step) < max(_SETTLED * now.k, 0.1 * noise / abs(curvature)):
+            break
+        k = now.k + step if low.k < now.k + step < high.k else (low.k + high.k) / 2
+    error = float((abs(now.slope.real) + noise) / abs(curvature))
+    status = now.status
+    if is_resolved(status) and not error <= max(solver.tolerance, _K_TOLERANCE) * now.k:
+        status = f"error {error:.1e} of k_max exceeds tolerance"
+    return Maximum(now.k, error, now, status)
+
+
+def _moved(solver, near, k):
+    """The mode `near` at a wavenumber close by, and its slope from the vectors before they were refined once more.
+
+    The difference of the two slopes shows how far rounding scatters them where another mode is near.
+    """
+    try:
+        mode = solver.solve(k, near.rate + (k - near.k) * near.rate_slope, (near.degree, near.x, near.y))
+        if not abs(solver.overlap(near, mode) - 1) < _OVERLAP:
+            mode = Walk(solver, near).to(k)
+    except ModeLost:
+        mode = Walk(solver, near).to(k)
+    return solver.solve(k, mode.rate, (mode.degree, mode.x, mode.y)), mode.slope
+
+
+def _hermite(low, high):
+    """Zero of the growth slope between two modes, from the cubic through values and slopes in log k."""
+    a, b = low.k * low.slope.real, high.k * high.slope.real
+    h = log(high.k / low.k)
+    secant = (high.growth_rate - low.growth_rate) / h
+    roots = np.roots((3 * (a + b - 2 * secant), 2 * (3 * secant - 2 * a - b), a))
+    inside = [root.real for root in roots if abs(root.imag) < 1e-12 and 0 < root.real < 1]
+    return low.k * exp(h * (inside[0] if len(inside) == 1 else a / (a - b)))
