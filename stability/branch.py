@@ -235,7 +235,7 @@ def _intervals(segments, wavenumbers):
     for at, which, far in zip(t, outside.argmin(axis=0).tolist(), outside.min(axis=0), strict=True):
         nodes, ends = segments[which], logs[which]
         if far:
-            places.append(([min(nodes[0], nodes[-1], key=lambda node, at=at: abs(log(node.k) - at))], 0))
+            places.append(([nodes[0 if abs(ends[0] - at) < abs(ends[-1] - at) else -1]], 0))
             continue
         index = int(np.searchsorted(ends, at, side="right")) - 1
         places.append((nodes, min(max(index, 0), max(len(nodes) - 2, 0))))

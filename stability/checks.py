@@ -92,3 +92,11 @@ def check_flag(name, value):
     if not isinstance(value, bool | np.bool_):
         raise ParameterError(f"{name} must be True or False (got {shown(value)})")
     return bool(value)
+
+
+def check_range(values, name):
+    """Return two positive numbers low < high as a tuple of floats, or raise a ParameterError."""
+    numbers = check_wavenumbers(values, name).tolist()
+    if len(numbers) != 2 or not numbers[0] < numbers[1]:
+        raise ParameterError(f"{name}: give a range (low, high) of positive numbers (got {shown(values)})")
+    return numbers[0], numbers[1]

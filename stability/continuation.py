@@ -12,9 +12,9 @@ import numpy as np
 
 from .bvp import Problem, solve
 from .checks import check_wavenumbers
+from .crests import SEARCH
 from .eigenvalue import Eigenvalue, Eigenvalues
 from .errors import ModeLost, NotResolved
-from .optimum import SEARCH
 from .solver import TOLERANCE
 from .status import RESOLVED
 from .threads import one_thread

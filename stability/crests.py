@@ -17,16 +17,19 @@ import numpy as np
 from . import chebyshev
 from .branch import surface_branch
 from .errors import ModeLost
-from .listing import FIRST, near_neutral, same
+from .listing import near_neutral, same
 from .status import is_resolved
 from .tracking import Walk
-from .wellposed import numbers
+from .wellposed import ill_posed_somewhere, numbers
 
+SEARCH = 1e-2, 100.0  # range of k; with a surface mode its lower end moves down until growth is a power of k
 ROUGH = 1e-4  # tolerance of the look: small systems find the brackets
 
+_SHORT = 20.0  # wavenumber times thickness of a layer up to which growth is looked for at least
 _STEP = 0.3  # of the look at other modes, in log k
 _DEPTH = 0.05  # damping of the modes that are followed, as a wave speed over the spread of speeds
 _POINTS = 32  # at which that spread is taken
+_FIT, _CLEARLY = 0.3, 0.1  # departure of two modes from one curve, relative to its size and to that of other pairs
 _DECADE = 10.0
 _DECADES = 16  # below the search in which the long-wave regime is sought
 _POWERS = 0.9, 2.5  # of k, between which growth lies in long waves
@@ -54,6 +57,21 @@ class Maximum:
     @property
     def growth_rate(self) -> float:
         return self.mode.growth_rate
+
+
+def default_mode(flow):
+    """Whose crests are meant unless told otherwise: those of all modes, "leading", or in ill-posed flows "surface"."""
+    if not flow.has_surface_mode():
+        return "leading"
+    return "leading" if flow.rivals and not ill_posed_somewhere(flow) else "surface"
+
+
+def search_of(flow):
+    """The range of k that is searched unless told otherwise: up to waves short beside the thinnest layer."""
+    if default_mode(flow) != "leading":
+        return SEARCH
+    thinnest = min(float(layer.height(np.array(1.0))) for layer in flow.layers(numbers(flow)))
+    return SEARCH[0], max(SEARCH[1], _SHORT / thinnest)
 
 
 @dataclass(frozen=True)
@@ -85,14 +103,14 @@ def look(solver, low, high):
     """Look at every mode that decays slowly or grows, low <= k <= high, each symmetry class by itself."""
     parts = [_look(half, low, high) for half in solver.halves]
     trouble = [part.trouble for part in parts if part.trouble]
-    ends = tuple([mode for part in parts for mode in part.ends[side]] for side in (0, 1))
-    return Look([pair for part in parts for pair in part.brackets], ends, trouble[0] if trouble else None)
+    first, last = ([mode for part in parts for mode in part.ends[side]] for side in (0, 1))
+    return Look([pair for part in parts for pair in part.brackets], (first, last), trouble[0] if trouble else None)
 
 
 def _look(solver, low, high):
     grid = np.geomspace(low, high, 1 + max(1, ceil(log(high / low) / _STEP))).tolist()
-    rough, rung, columns, trouble = solver.rough(ROUGH), FIRST, [], None
-    depth = _depth(solver.flow)
+    rough, rung, columns, trouble = solver.rough(ROUGH), 0, [], None
+    depth = depth_of(solver.flow)
     for k in grid:
         try:
             modes, rung = near_neutral(rough, k, depth(k), rung)
@@ -105,7 +123,7 @@ def _look(solver, low, high):
     return Look(brackets, (columns[0] or [], columns[-1] or []), trouble)
 
 
-def _depth(flow):
+def depth_of(flow):
     """The decay rate, in units of the rates, down to which modes are looked at, as a function of k.
 
     In terms of wave speeds: `_DEPTH` of the differences of speed, or the thickness of a viscous layer in these units
@@ -119,19 +137,41 @@ def _depth(flow):
 
 
 def _ways(solver, here, there):
-    """Nodes by rising k of every mode followed from one wavenumber to the next, or back where none arrived."""
+    """Nodes by rising k of every mode from one wavenumber to the next: both ends where rates and slopes leave no doubt
+    which belong together, else as followed there, or back where none arrived."""
+    pairs = _partners(here, there)
+    yield from pairs
+    known = [mode for pair in pairs for mode in pair]
     arrived = []
     for start in here:
-        with suppress(ModeLost, IndexError):
-            walk = Walk(solver, start)
-            arrived.append(walk.to(there[0].k if there else start.k * exp(_STEP)))
-            yield [node for part in walk.segments for node in part]
-    for start in there:
-        if not any(same(start, mode) for mode in arrived):
-            with suppress(ModeLost, IndexError):
+        if there and start not in known:
+            with suppress(ModeLost):
                 walk = Walk(solver, start)
-                walk.to(here[0].k if here else start.k * exp(-_STEP))
+                arrived.append(walk.to(there[0].k))
+                yield [node for part in walk.segments for node in part]
+    for start in there:
+        if here and start not in known and not any(same(start, mode) for mode in arrived):
+            with suppress(ModeLost):
+                walk = Walk(solver, start)
+                walk.to(here[0].k)
                 yield [node for part in walk.segments for node in part][::-1]
+
+
+def _partners(here, there):
+    """Pairs of modes at two wavenumbers whose rates and slopes fit one curve, and no other pair nearly as well."""
+    if not here or not there:
+        return []
+    h = log(there[0].k / here[0].k)
+    (a, b), (u, v) = (np.array([(mode.rate, h * mode.k * mode.rate_slope) for mode in modes]).T
+                      for modes in (here, there))
+    bend = np.abs(u - a[:, None] - (b[:, None] + v) / 2)  # of every pair (here, there)
+    size = np.abs(u - a[:, None]) + np.abs(b[:, None]) + np.abs(v)
+    pairs = []
+    for i, j in enumerate(bend.argmin(axis=1).tolist()):
+        rivals = np.concatenate((np.delete(bend[i], j), np.delete(bend[:, j], i)))
+        if bend[i, j] < _FIT * size[i, j] and np.all(bend[i, j] < _CLEARLY * rivals):
+            pairs.append([here[i], there[j]])
+    return pairs
 
 
 def _heard(solver, node):
@@ -210,6 +250,13 @@ def crest(solver, left, right):
     if is_resolved(status) and not error <= max(solver.tolerance, _K_TOLERANCE) * now.k:
         status = f"error {error:.1e} of k_max exceeds tolerance"
     return Maximum(now.k, error, now, status)
+
+
+def middle_of(solver, left, right):
+    """A mode near the crest between two that bracket it, and the curvature of growth in log k there, roughly."""
+    k = _hermite(left, right)
+    a, b = (mode.k * mode.slope.real for mode in (left, right))
+    return _moved(solver, left if k - left.k < right.k - k else right, k)[0], (b - a) / log(right.k / left.k)
 
 
 def _moved(solver, near, k):

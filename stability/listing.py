@@ -19,6 +19,7 @@ from .errors import ModeLost, naming
 from .status import doubtful, is_resolved
 
 FIRST = 6  # rung of the degrees at which a look starts
+_LOWEST = 3  # rung below which a look at modes near zero growth does not start
 _SPARE = 3  # eigenvalues behind the last one asked for among which the widest gap is taken for the line
 _DRIFT = 1e-4  # relative difference of a rate between two degrees that counts as settled
 _LEAP = 0.05  # largest relative distance of a refined rate from the dense one
@@ -44,7 +45,7 @@ class Listing:
     @property
     def status(self):
         """Of each mode; where others may be missing, that instead of "resolved"."""
-        return tuple(doubtful(self.doubt) if rank >= self.sure and is_resolved(mode.status) else mode.status
+        return tuple(doubtful(str(self.doubt)) if rank >= self.sure and is_resolved(mode.status) else mode.status
                      for rank, mode in enumerate(self.modes))
 
 
@@ -53,7 +54,7 @@ class _Class:
 
     def __init__(self, solver, k):
         self.solver, self.k = solver, k
-        self.rates = self.before = None
+        self.rates, self.before, self.degree = np.empty(0, complex), np.empty(0, complex), 0
         self.symbols = solver.symbols(k)
 
     def look(self, degree):
@@ -61,7 +62,7 @@ class _Class:
 
     def settled(self, line):
         """Whether the rates above the line are, one to one, those of the degree before."""
-        if self.before is None:
+        if not len(self.before):
             return False
         now, before = (rates[rates.real > line] for rates in (self.rates, self.before))
         return _paired(now, self.before) and _paired(before, self.rates)
@@ -157,18 +158,17 @@ def leading_modes(solver, k, count):
 def near_neutral(solver, k, depth, rung):
     """Return all modes whose rates decay no faster than `depth`, and a rung to start from next.
 
-    Where that takes a large dense problem, a part of the depth may do. Raises ModeLost where they do not settle
-    or the determinant counts others.
+    Where that takes a large dense problem, a part of the depth may do. Raises ModeLost where they do not settle.
     """
     one = _Class(solver, k)
-    degrees = dense_degrees(solver, rung, 1)
+    degrees = dense_degrees(solver, max(rung, _LOWEST), 1)
     for degree in degrees:
         one.look(degree)
         costly = degree * len(solver.assembly.system.fields) > _COSTLY
         for line in (-depth, -depth / 4, -depth / 16) if costly else (-depth,):
             if one.settled(line):
                 modes = one.refined(line)
-                if None not in modes and not one.missing(modes, line):
+                if None not in modes:
                     return modes, max(0, solver.degrees.index(degree) - 1)
     raise ModeLost(f"{solver.flow}, k = {k:g}: the least stable modes do not settle up to degree {degrees[-1]}")
 

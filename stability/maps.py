@@ -98,9 +98,6 @@ class Request:
             check_parameter_name(self.flow, self.vary)
         if self.vary in self.over:
             raise ParameterError(f"vary: {self.vary} is the parameter to solve for; sweep another one")
-        if self.quantity == "k_max" and not self.flow.has_surface_mode():
-            raise ParameterError(f"quantity k_max: {self.flow.name} has no slow surface mode; ask for growth_rate at "
-                                 "given wavenumbers k, or for neutral")
 
     @property
     def axes(self):
@@ -272,9 +269,9 @@ def parameter_map(flow: "Flow", over: "Mapping[str, ArrayLike]", quantity: str |
                   max_degree: int = DEGREES[-1]) -> Map:
     """Return the `Map` of a quantity over one to three parameters, `over` = {name: values}.
 
-    "k_max" (the default) is the fastest growing wavenumber of the surface mode with its growth rate, "growth_rate"
+    "k_max" (the default) is the fastest growing wavenumber with its growth rate, as `k_max` has it, "growth_rate"
     (the default with wavenumbers `k`, the innermost axis then) that of the mode that `dispersion` follows, "neutral"
-    (the default with `vary`) the critical value of `vary`, sought from the value that the flow has. What
+    (the default with `vary`) the critical value of `vary`, as `critical` has it. What
     fails says so in its status.
 
     Work is done in this process, in `workers` processes of our own (a script then needs `if __name__ == "__main__":`

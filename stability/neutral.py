@@ -1,30 +1,29 @@
 """Neutral stability: where the growth rate vanishes, in a parameter and in the wavenumber.
 
-`critical` finds the value of one parameter at which the largest growth rate over all wavenumbers is zero.
-Either a nose, growth = d growth / dk = 0 at a finite k, by Newton in (log k, value); or the long-wave
-threshold, where the coefficient a of growth = a k^2 + O(k^4) changes sign: with sigma = k rate, a is the
-real part of d rate / dk at k = 0, where the scaled equations are regular. `neutral_curve` follows
-growth = 0 through the plane of k and the parameter by arclength, past its turning points.
+`critical` finds the values of one parameter at which the largest growth rate over all wavenumbers changes sign
+(`stability.critical`), `neutral_curve` those at which a mode is neutral at given wavenumbers (`stability.crossings`).
+The line through those is followed by arclength through the plane of k and the parameter, past its turning points.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, fields, replace
-from math import exp, log
+from math import exp
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from .checks import check_flag, check_wavenumbers, shown
+from .checks import check_flag, check_range, check_wavenumbers, shown
+from .critical import critical_zeros
+from .crossings import zeros_at
 from .errors import ModeLost, NotResolved, ParameterError
-from .flows.base import check_flow
+from .flows.base import check_flow, span_of
 from .output import Row
-from .plane import Plane
 from .record import Record
+from .ridges import Landscape
 from .solver import DEGREES, TOLERANCE, check_accuracy
-from .status import RESOLVED, is_resolved
+from .status import inside, is_resolved
 from .threads import one_thread
-from .branch import surface_mode
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,20 +31,14 @@ if TYPE_CHECKING:
 
     from .flows import Flow
 
-_ROUGH = 1e-5  # tolerance of the first Newton steps and of the arclength continuation
-_LONG = 1e-9  # wavenumber that stands for 0
-_LONG_ERROR = 32.0  # error of d rate/dk there in units of the error of the rate (measured: up to 18)
+_ROUGH = 1e-5  # tolerance of the arclength continuation
 _ITERATIONS = 20
-_SETTLED = 1e-4  # step of the rough Newton iteration below which its last Jacobian serves at full accuracy
-_POLISH = 6
-_ASTRAY = 4.0  # factor in the value beyond which Newton's method is not trusted
-_STRIDE = 1e-4  # in log k, to difference the gradient
 _LARGEST = 0.4  # step of Newton in log k, and relative in the parameter
 _ARC = 0.02, 0.25  # first and largest step along the curve, in log k and log value
 _TURN = 0.15  # angle between neighbouring tangents at which the step is kept
 _POINTS = 400
 _MARGIN = 1.15  # factor in k beyond the range asked for within which the curve may turn back
-_SPAN = 1e4  # the continuation ends where the value has changed by this factor
+_DRAWN = 0.03  # distance from a curve, in log k and log value, within which a point lies on it
 
 
 class _ZeroGrowth(Record):
@@ -71,7 +64,8 @@ class NeutralPoint(_ZeroGrowth):
 
     `k` is its wavenumber (0: long-wave threshold), `error` and `k_error` bound the absolute errors of `value`
     and `k` (k_error is 0 where k was given); `status` is "resolved" or says what failed, and then the other
-    numbers may be None.
+    numbers may be None. `others` are further values in the range that was searched: where the largest growth rate
+    changes sign again, or, with "; inside" in their status, where a crest of growth does while other waves grow.
     """
 
     flow: Any
@@ -83,7 +77,8 @@ class NeutralPoint(_ZeroGrowth):
     k_error: float | None
     status: str
     settings: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
-    dimension: ClassVar[str] = "flow"
+    others: "tuple[NeutralPoint, ...]" = field(default=(), repr=False)
+    dimension: ClassVar[str] = "point"
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Mark (k, value) in the matplotlib Axes `ax`, that of a `NeutralCurve` say, or in a new one; return it."""
@@ -92,9 +87,8 @@ class NeutralPoint(_ZeroGrowth):
         return plots.neutral_point(self, plots.axes_or_new(ax))
 
     def rows(self) -> list[Row]:
-        row = self.row()
-        status = row.pop("status")
-        return [{**row, "k_error": self.k_error, "status": status}]
+        return [{**{name: value for name, value in point.row().items() if name != "status"}, "k_error": point.k_error,
+                 "status": point.status} for point in (self, *self.others)]
 
     def row(self) -> Row:
         """Return the row of this point in the table of a curve."""
@@ -158,40 +152,65 @@ class NeutralSweep(_ZeroGrowth):
         return {**super().about(), "over": self.over}
 
 
-def critical(flow: "Flow", vary: str, *, long_wave: bool = False, tolerance: float = TOLERANCE,
+def critical(flow: "Flow", vary: str, *, span: tuple[float, float] | None = None,
+             search: tuple[float, float] | None = None, long_wave: bool = False, tolerance: float = TOLERANCE,
              max_degree: int = DEGREES[-1], strict: bool = True) -> NeutralPoint:
     """Return the `NeutralPoint` at which the largest growth rate over k is zero as `vary` varies.
 
-    The search starts from the value that the flow has. `long_wave` asks for the threshold as k -> 0, even
-    where waves of finite length grow on its stable side. Raises NotResolved if there is no such value near it;
-    with strict=False the record says so in `status`.
+    All values in the `span` (low, high) of the parameter are sought, whatever value the flow has, by the growth of all
+    modes over `search` = (low, high) in k; of ill-posed flows by that of the surface mode. Without a span it is what
+    the flow says (`stability flows FLOW`). The first value that is met from the stable side is returned, with the
+    others in `others`. `long_wave` asks for the threshold as k -> 0 alone, even where waves of finite length grow on
+    its stable side. Raises NotResolved if there is none; with strict=False the record says so in `status`.
 
     >>> from stability.flows import Film
-    >>> point = critical(Film(slope_deg=45.0), "Re")
+    >>> point = critical(Film(slope_deg=45.0), "Re", span=(0.5, 5.0))
     >>> f"{point.value:.9f} at k = {point.k:g}"
     '1.250000000 at k = 0'
     """
     strict, long_wave = check_flag("strict", strict), check_flag("long_wave", long_wave)
-    (point,) = critical_sweep([check_flow(flow)], vary, long_wave=long_wave, tolerance=tolerance, max_degree=max_degree)
+    (point,) = critical_sweep([check_flow(flow)], vary, span=span, search=search, long_wave=long_wave,
+                              tolerance=tolerance, max_degree=max_degree)
     if strict and not is_resolved(point.status):
         raise NotResolved(point.status)
     return point
 
 
-def critical_sweep(flows: "Iterable[Flow]", vary: str, *, long_wave: bool = False, tolerance: float = TOLERANCE,
+def critical_sweep(flows: "Iterable[Flow]", vary: str, *, span: tuple[float, float] | None = None,
+                   search: tuple[float, float] | None = None, long_wave: bool = False, tolerance: float = TOLERANCE,
                    max_degree: int = DEGREES[-1]) -> Iterator[NeutralPoint]:
-    """Yield `critical` of each flow in turn, starting from the value found last; what failed is in its status."""
+    """Yield `critical` of each flow in turn; what failed is in its status."""
     tolerance, max_degree = check_accuracy(tolerance, max_degree)
-    settings = {"tolerance": tolerance, "max_degree": max_degree, **({"long_wave": "yes"} if long_wave else {})}
-    last = None
     for flow in flows:
-        check_parameter_name(flow, vary)
-        if last is not None:
-            with suppress(ParameterError):
-                flow = replace(flow, **{vary: last.value})
-        point = _critical(flow, vary, tolerance, max_degree, long_wave)
-        last = point if point.value is not None else last
-        yield replace(point, settings=settings)
+        yield _critical(_landscape(flow, vary, span, search, tolerance, max_degree), long_wave)
+
+
+def _landscape(flow, vary, span, search, tolerance, max_degree):
+    check_parameter_name(flow, vary)
+    span = span_of(flow, vary) if span is None else check_range(span, "span")
+    search = None if search is None else check_range(search, "search")
+    return Landscape(flow, vary, span, search, tolerance, max_degree)
+
+
+@one_thread
+def _critical(land, long_wave):
+    settings = {**_settings(land), **({"long_wave": "yes"} if long_wave else {})}
+    found = critical_zeros(land, long_wave)
+    points = [_record(land, zero, settings) for zero in found.boundaries]
+    points += [replace(point, status=inside(point.status)) for point in
+               (_record(land, zero, settings) for zero in found.inner)]
+    if found.boundaries:
+        return replace(points[0], others=tuple(points[1:]))
+    nothing = _nothing(land.flow, land.vary, 0.0 if long_wave else None, found.why)
+    return replace(nothing, settings=settings, others=tuple(points))
+
+
+def _settings(land):
+    """What a result depends on besides flow and parameter."""
+    plane = land.planes[0]
+    return {"range": f"{land.span[0]:g} .. {land.span[1]:g}", "search": f"{land.search[0]:g} .. {land.search[1]:g}",
+            "tolerance": plane.tolerance,
+            "max_degree": plane.max_degree}
 
 
 def check_parameter_name(flow: "Flow", name: str) -> str:
@@ -202,177 +221,86 @@ def check_parameter_name(flow: "Flow", name: str) -> str:
     return name
 
 
-@one_thread
-def _critical(flow, vary, tolerance, max_degree, long_wave=False):
-    plane = Plane(flow, vary, tolerance, max_degree)
-    rough = plane.rough(_ROUGH)
-    try:
-        threshold = _long_wave_threshold(plane)
-        if long_wave:
-            return threshold or _nothing(flow, vary, 0.0, f"{flow}: no long-wave threshold in {vary}")
-        if threshold is None:
-            return _search(plane, rough, getattr(flow, vary))
-        beyond = rough.most_unstable(threshold.value)
-        return _search(plane, rough, threshold.value, beyond) if beyond else threshold
-    except ModeLost as reason:
-        return _nothing(flow, vary, None, str(reason))
-
-
-def _search(plane, rough, value, point=None):
-    """The nose next to `value`; from between a stable and an unstable value where Newton's method needs it."""
-    with suppress(ModeLost, ParameterError, np.linalg.LinAlgError):
-        nose = _nose(plane, rough, point or rough.near_largest(value))
-        if rough.most_unstable(nose.value, nose.k) is None:
-            return nose
-    return _nose(plane, rough, rough.near_largest(rough.bracket(value)))
-
-
-def _nose(plane, rough, point):
-    """The nose near `point`: Newton on growth = d growth / d log k = 0, at last with full accuracy."""
-    first = point
-    for _ in range(_ITERATIONS):
-        if first.value and not 1 / _ASTRAY < point.value / first.value < _ASTRAY:
-            raise ModeLost(f"{first.mode.flow}: no nose of the neutral curve is near {plane.vary} = {first.value:.6g}")
-        jacobian = _jacobian(rough, point)
-        step = -np.linalg.solve(jacobian, _equations(rough, point)[0])
-        largest = max(abs(step[0]), abs(step[1]) / (abs(point.value) or 1.0))
-        if largest < _SETTLED:
-            break
-        step = step * min(1.0, _LARGEST / largest)
-        point = rough.move(point, point.k * exp(step[0]), point.value + float(step[1]))
-    else:
-        raise ModeLost(f"{point.mode.flow}: Newton's method for the nose of the neutral curve does not settle "
-                       f"(k = {point.k:.6g}, {plane.vary} = {point.value:.6g})")
-    for _ in range(_POLISH):
-        point = plane.move(point, point.k * exp(step[0]), point.value + float(step[1]))
-        step = -np.linalg.solve(jacobian, _equations(rough, point)[0])
-        if abs(point.growth) < point.mode.error and abs(step[0]) < 1e-9:
-            break
-    bend = jacobian[1, 0] * point.k**rough.power
-    error = (point.mode.error + abs(point.growth)) / abs(point.by_value.real)
-    k_error = point.k * (point.k * point.mode.slope_error + abs(point.gradient[0])) / abs(bend)
-    return _record(point, plane.vary, error, k_error, plane.tolerance)
-
-
-def _equations(plane, point):
-    """growth / k^power and its derivative in log k, which vanish at the nose; and the derivatives of the first.
-
-    With the power of the long-wave growth they do not vanish everywhere at k = 0.
-    """
-    scale = point.k**-plane.power
-    gradient = scale * (point.gradient - np.array([plane.power * point.growth, 0.0]))
-    return np.array([scale * point.growth, gradient[0]]), gradient
-
-
-def _jacobian(plane, point):
-    """Of the two equations in (log k, value): the second row by a difference along k."""
-    beside = plane.move(point, point.k * exp(_STRIDE), point.value)
-    first, second = (_equations(plane, at)[1] for at in (point, beside))
-    return np.array([first, (second - first) / _STRIDE])
-
-
-def _record(point, vary, error, k_error, tolerance):
-    status = point.mode.status
-    if is_resolved(status) and not error <= max(tolerance, 1e-9) * abs(point.value):
-        status = f"error {error:.1e} of {vary} exceeds tolerance"
-    return NeutralPoint(point.mode.flow, vary, point.k, point.value, point.mode.phase_speed, float(error),
-                        float(k_error), status)
+def _record(land, zero, settings):
+    flow = land.planes[0].flow_at(zero.value)
+    return NeutralPoint(flow, land.vary, zero.k, zero.value, zero.mode.phase_speed, zero.error, zero.k_error,
+                        zero.status, settings)
 
 
 def _nothing(flow, vary, k, why):
     return NeutralPoint(flow, vary, k, None, None, None, None, why)
 
 
-def _long_wave_threshold(plane):
-    """The long-wave threshold next to the value of the flow, or None."""
-    if not plane.flow.has_surface_mode():
-        return None
-    value = getattr(plane.flow, plane.vary)
-    try:
-        old, new = (_long_wave_growth(plane, v) for v in (value, value * 1.01 if value else 0.01))
-        for _ in range(_ITERATIONS):
-            slope = (new[1] - old[1]) / (new[0] - old[0])
-            if slope == 0:
-                return None
-            step, limit = -new[1] / slope, 0.5 * abs(new[0]) or 1.0
-            old, new = new, _long_wave_growth(plane, new[0] + float(np.clip(step, -limit, limit)))
-            if abs(new[0] - old[0]) < 1e-7 * abs(new[0]) or abs(new[1]) <= new[2]:
-                break
-        else:
-            return None
-    except (ModeLost, ParameterError):
-        return None
-    value, growth, spread, mode = new
-    error = (abs(growth) + spread) / abs(slope)
-    return NeutralPoint(mode.flow, plane.vary, 0.0, value, mode.phase_speed, float(error), 0.0, RESOLVED)
+def neutral_curve(flow: "Flow", vary: str, k: "ArrayLike", *, span: tuple[float, float] | None = None,
+                  tolerance: float = TOLERANCE, max_degree: int = DEGREES[-1]) -> NeutralCurve:
+    """Return the `NeutralCurve` of a flow: at each wavenumber of k, all values of `vary` in the `span` at which a mode
+    is neutral.
 
-
-def _long_wave_growth(plane, value):
-    """(value, coefficient a of growth = a k^2 as k -> 0, its spread between two degrees, the mode)."""
-    solver = plane.solver(value)
-    mode = surface_mode(solver, _LONG)
-    if abs(mode.rate.real) > 1e-6 * abs(mode.rate):
-        raise ModeLost("growth is of lower order than k^2")
-    rung = solver.degrees.index(mode.degree)
-    ahead = [solver.solve(mode.k, mode.rate, (mode.degree, mode.x, mode.y), degree)
-             for degree in solver.degrees[rung + 1: rung + 3]]
-    slopes = [other.rate_slope.real for other in (mode, *ahead)]
-    return value, slopes[-1], abs(slopes[-1] - slopes[-2]) + _LONG_ERROR * mode.error / solver.width(mode.k), mode
-
-
-def neutral_curve(flow: "Flow", vary: str, k: "ArrayLike", *, tolerance: float = TOLERANCE,
-                  max_degree: int = DEGREES[-1]) -> NeutralCurve:
-    """Return the `NeutralCurve` through the critical point: at each wavenumber of k, all its values of `vary`.
-
-    A wavenumber that the curve does not reach keeps one point without numbers, whose status says so.
-    Raises NotResolved where there is no critical point to start from.
+    A wavenumber without such a value keeps one point without numbers, whose status says so. What is found at one does
+    not depend on the others.
     """
-    return joined(list(neutral_parts(flow, vary, k, tolerance=tolerance, max_degree=max_degree)))
+    return joined(list(neutral_parts(flow, vary, k, span=span, tolerance=tolerance, max_degree=max_degree)))
 
 
-def neutral_parts(flow: "Flow", vary: str, k: "ArrayLike", *, tolerance: float = TOLERANCE,
-                  max_degree: int = DEGREES[-1]) -> Iterator[NeutralCurve]:
+def neutral_parts(flow: "Flow", vary: str, k: "ArrayLike", *, span: tuple[float, float] | None = None,
+                  tolerance: float = TOLERANCE, max_degree: int = DEGREES[-1]) -> Iterator[NeutralCurve]:
     """Yield the curve of `neutral_curve` with the points of one wavenumber at a time: `joined` puts them together."""
-    check_parameter_name(check_flow(flow), vary)
     wavenumbers = check_wavenumbers(k)
     tolerance, max_degree = check_accuracy(tolerance, max_degree)
-    origin = _critical(flow, vary, tolerance, max_degree)
-    if origin.value is None:
-        raise NotResolved(origin.status)
-    plane = Plane(flow, vary, tolerance, max_degree)
-    trace = one_thread(_trace)(plane.rough(_ROUGH), origin, min(wavenumbers), max(wavenumbers))
-    line = np.array([(point.k, point.value) for point in trace])
+    land = _landscape(check_flow(flow), vary, span, None, tolerance, max_degree)
+    settings = {name: value for name, value in _settings(land).items() if name != "search"}
+    drawn = np.empty((0, 2))
     for wavenumber in wavenumbers.tolist():
-        yield NeutralCurve(flow, vary, _crossings(plane, trace, wavenumber), line,
-                           {"tolerance": tolerance, "max_degree": max_degree})
+        points, lines = one_thread(_at_wavenumber)(land, wavenumber, settings, drawn, wavenumbers.min(),
+                                                   wavenumbers.max())
+        drawn = np.concatenate((drawn, *lines))
+        yield NeutralCurve(flow, vary, points, np.concatenate((np.empty((0, 2)), *lines)), settings)
 
 
 def joined(parts: list[NeutralCurve]) -> NeutralCurve:
     """Return the parts as one curve."""
-    return replace(parts[0], points=tuple(point for part in parts for point in part.points))
+    return replace(parts[0], points=tuple(point for part in parts for point in part.points),
+                   trace=np.concatenate([part.trace for part in parts]))
 
 
-@one_thread
-def _crossings(plane, trace, k):
-    """The neutral points at one wavenumber, by increasing value; one that says so where there are none."""
-    found = [_at_wavenumber(plane, a, b, k) for a, b in zip(trace, trace[1:], strict=False)
-             if (a.k - k) * (b.k - k) <= 0 and b.k != k]
-    none = _nothing(plane.flow, plane.vary, k, f"the neutral curve does not reach k = {k:g}")
-    return tuple(sorted(found, key=lambda point: point.value or 0.0) or [none])
+def _at_wavenumber(land, k, settings, drawn, low, high):
+    """The neutral points at one wavenumber, and the curves through those that lie on none that is drawn yet."""
+    zeros, trouble, grows = zeros_at(land, k)
+    points = [_record(land, zero, settings) for zero in zeros]
+    if trouble:
+        value, reason = next(iter(trouble.items()))
+        doubt = f"others may be missing: at {land.vary} = {value:.4g}, {reason}"
+        points = [replace(point, status=doubt) if is_resolved(point.status) else point for point in points]
+    if not points:
+        kind = "a mode grows" if grows == {True} else "all modes decay"
+        why = f"the neutral curve does not reach k = {k:g}: {kind} at every {land.vary} from {land.span[0]:g} to " \
+              f"{land.span[1]:g}"
+        points = [_nothing(land.flow, land.vary, k, doubt if trouble else why)]
+    lines = []
+    for zero in zeros:
+        if not _drawn(np.concatenate((drawn, *lines)), k, zero.value):
+            with suppress(ModeLost, ParameterError, np.linalg.LinAlgError):
+                lines.append(_trace(land, zero, low, high))
+    return tuple(points), lines
 
 
-def _trace(plane, origin, low, high):
-    """Points along the neutral curve through `origin`, from end to end."""
-    if origin.k == 0:
-        start = plane.leading(0.5 * min(low, 0.02), origin.value)
-        return _walk(plane, start, 1, 0.0, high)
-    start = plane.leading(origin.k, origin.value)
-    back, ahead = (_walk(plane, start, side, low, high) for side in (-1, 1))
-    return [*reversed(back[1:]), *ahead]
+def _drawn(lines, k, value):
+    return bool(len(lines)) and float(np.nanmin(np.abs(np.log(lines / (k, value))).max(axis=1))) < _DRAWN
 
 
-def _walk(plane, start, side, low, high):
-    """Follow the curve by arclength until it leaves low <= k <= high, or as far as the mode can be followed."""
+def _trace(land, zero, low, high):
+    """Points (points + 1, 2) along the neutral curve through a zero, from end to end; a row of nan ends it."""
+    (half,) = (index for index, flow in enumerate(land.planes[0].flow_at(zero.value).halves())
+               if flow == zero.mode.flow)
+    plane = land.planes[half].rough(_ROUGH)
+    start = plane.adopt(land.planes[half].point(zero.k, zero.value, zero.mode))
+    back, ahead = (_walk(plane, start, side, low, high, land.span) for side in (-1, 1))
+    return np.array([*((point.k, point.value) for point in (*reversed(back[1:]), *ahead)), (np.nan, np.nan)])
+
+
+def _walk(plane, start, side, low, high, span):
+    """Follow the curve by arclength until it leaves low <= k <= high or the span, or as far as the mode can be
+    followed."""
     points, step = [_project(plane, start)], _ARC[0]
     tangent = _tangent(points[0])
     tangent = side * tangent * np.sign(tangent[0])
@@ -396,7 +324,7 @@ def _walk(plane, start, side, low, high):
         points.append(new)
         tangent, step = direction, min(_ARC[1], step * min(2.0, _TURN / max(turn, 1e-9)))
         leaving = new.k * _MARGIN < low and tangent[0] < 0 or new.k > high * _MARGIN and tangent[0] > 0
-        if leaving or abs(log(new.value / start.value)) > log(_SPAN):
+        if leaving or not span[0] <= new.value <= span[1]:
             break
     return points
 
@@ -422,21 +350,3 @@ def _project(plane, point):
             return point
         point = plane.move(point, point.k * exp(step[0]), point.value * exp(step[1]))
     raise ModeLost("the neutral curve is not near")
-
-
-def _at_wavenumber(plane, left, right, k):
-    """The neutral point at k between two neighbours on the curve, by Newton in the value."""
-    share = log(k / left.k) / log(right.k / left.k)
-    near = left if share < 0.5 else right
-    try:
-        point = plane.move(near, k, left.value * (right.value / left.value) ** share)
-        for _ in range(_ITERATIONS):
-            step = -point.growth / point.by_value.real
-            if abs(point.growth) < 0.5 * point.mode.error or abs(step) < 1e-14 * abs(point.value):
-                break
-            step = float(np.clip(step, -0.2 * abs(point.value), 0.2 * abs(point.value)))
-            point = plane.move(point, k, point.value + step)
-    except (ModeLost, ParameterError) as reason:
-        return _nothing(plane.flow, plane.vary, k, str(reason))
-    error = (point.mode.error + abs(point.growth)) / abs(point.by_value.real)
-    return _record(point, plane.vary, error, 0.0, plane.tolerance)

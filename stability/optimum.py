@@ -6,16 +6,17 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from .checks import check_flag, check_options, check_wavenumbers, shown
-from .crests import Maximum, crest, look, may_grow, surface_look
-from .errors import ModeLost, NotResolved, ParameterError, naming
+from .checks import check_flag, check_options, check_range
+from .crests import Maximum, crest, default_mode, look, may_grow, search_of, surface_look
+from .errors import ModeLost, NotResolved, naming
 from .flows.base import check_flow
+from .listing import listed
 from .output import Row
 from .record import Record
 from .solver import DEGREES, TOLERANCE, Assembly, Solver, check_accuracy
 from .status import STABLE, is_outgrown, is_resolved
 from .threads import one_thread
-from .wellposed import flag_outgrown, ill_posed_somewhere, well_posedness
+from .wellposed import flag_outgrown, well_posedness
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
     from .flows import Flow
 
 MODES = ("surface", "leading")
-SEARCH = (1e-2, 100.0)  # default range of k; its lower end moves down until growth is a power of k
 
 
 @dataclass(frozen=True, repr=False)
@@ -157,9 +157,9 @@ def k_max(flow: "Flow", search: tuple[float, float] | None = None, mode: str | N
 
     mode="leading" takes the fastest of all modes (the default where the flow is well posed), "surface" the slow
     surface mode alone (the default of ill-posed flows, whose internal modes grow without bound). Without a search it
-    is `SEARCH`, and for a surface mode its lower end moves down until growth is a power of k. Only maxima with
-    positive growth rate count: a flow that decays everywhere has none. Raises NotResolved if there is none; with
-    strict=False the record says so in `status`.
+    reaches to waves much shorter than the layers, and for a surface mode its lower end moves down until growth is a
+    power of k. Only maxima with positive growth rate count: a flow that decays everywhere has none. Raises
+    NotResolved if there is none; with strict=False the record says so in `status`.
     """
     strict = check_flag("strict", strict)
     (optimum,) = k_max_sweep([check_flow(flow)], search, mode, tolerance=tolerance, max_degree=max_degree)
@@ -175,7 +175,7 @@ def k_max_sweep(flows: "Iterable[Flow]", search: tuple[float, float] | None = No
     Flows with the same equations share their matrices (dunes at different Re, say).
     """
     tolerance, max_degree = check_accuracy(tolerance, max_degree)
-    search = None if search is None else check_search(search)
+    search = None if search is None else check_range(search, "search")
     mode = None if mode is None else check_options("mode", mode, MODES)
     yield from flag_outgrown(_optima(flows, search, mode, tolerance, max_degree))
 
@@ -187,48 +187,48 @@ def _optima(flows, search, mode, tolerance, max_degree):
         yield _optimum(Solver(flow, tolerance, max_degree, assembly), search, mode or default_mode(flow))
 
 
-def default_mode(flow: "Flow") -> str:
-    """The mode whose maxima `k_max` returns unless told otherwise."""
-    if not flow.has_surface_mode():
-        return "leading"
-    return "leading" if flow.rivals and not ill_posed_somewhere(flow) else "surface"
-
-
-def check_search(search):
-    """Return a range of wavenumbers as (low, high), or raise a ParameterError."""
-    wavenumbers = check_wavenumbers(search, "search").tolist()
-    if len(wavenumbers) != 2 or not wavenumbers[0] < wavenumbers[1]:
-        raise ParameterError(f"search: give a range of wavenumbers (low, high) (got {shown(search)})")
-    return wavenumbers
-
-
 @one_thread
 def _optimum(solver, search, mode):
     if mode == "surface" and not solver.flow.has_surface_mode():
         solver.flow.long_wave(1.0)  # says so
-    low, high = search or SEARCH
+    low, high = search or search_of(solver.flow)
     settings = {"mode": mode, "tolerance": solver.tolerance, "max_degree": solver.degrees[-1]}
     try:
         looks = [surface_look(solver, low, high)] if solver.flow.has_surface_mode() else []
         looks += [look(solver, low, high)] if mode == "leading" and solver.flow.rivals else []
     except ModeLost as reason:
         return Optimum(solver.flow, (), str(reason), settings)
-    found = [maximum for one in looks for maximum in _maxima(solver, one)]
+    found, lost = _maxima(solver, [pair for one in looks for pair in one.brackets])
     inside = [one for one in found if search is None or low <= one.k <= high]
-    others = mode == "surface" and solver.flow.rivals
     maxima = _distinct(sorted(inside, key=lambda one: -one.growth_rate))
-    return Optimum(solver.flow, tuple(maxima), _status(looks, found, maxima, others, low, high), settings)
+    doubt = lost or (_outdone(solver, maxima[0]) if maxima and mode == "leading" else None)
+    others = mode == "surface" and solver.flow.rivals
+    status = doubt or _status(looks, found, maxima, others, low, high)
+    return Optimum(solver.flow, tuple(maxima), status, settings)
 
 
-def _maxima(solver, one):
-    """The positive maxima in the brackets of a look; those at which the mode is lost are left out, and that is said."""
-    found = []
-    for left, right in one.brackets:
+def _maxima(solver, brackets):
+    """The positive maxima in the brackets, and why the mode is lost in one of them, or None."""
+    solvers, found, lost = {half.flow: half for half in solver.halves}, [], None
+    for left, right in brackets:
         if may_grow(left, right):
-            maximum = crest(solver, left, right)
-            if maximum.growth_rate > 0:
-                found.append(maximum)
-    return found
+            try:
+                found.append(crest(solvers[left.flow], left, right))
+            except ModeLost as reason:
+                lost = str(reason)
+    return [maximum for maximum in found if maximum.growth_rate > 0], lost
+
+
+def _outdone(solver, best):
+    """Why the largest maximum may not be the answer by the complete list of modes at its wavenumber, or None."""
+    try:
+        known = listed(solver, best.k, 1)
+    except ModeLost as reason:
+        return str(reason)
+    first = known.modes[0]
+    if first.growth_rate > best.growth_rate + first.error + best.mode.error:
+        return f"another mode grows at {first.growth_rate:.6g} at k = {best.k:.6g}"
+    return None if known.sure else known.status[0]
 
 
 def _distinct(maxima):

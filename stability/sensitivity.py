@@ -117,18 +117,32 @@ def _slope(mode: Mode, name: str, value: float, slope: complex, error: float) ->
 
 def parameter_slope(solver: Solver, mode: Mode, name: str, step: float = _STEP) -> complex:
     """Return d sigma / d name of a mode of `solver.flow`, at fixed wavenumber; `step` is relative to its value."""
-    weights, flows = _neighbours(solver.flow, name, step)
-    systems = [System(flow) for flow in flows]
-    tables = [_symbols(flow, mode) for flow in (solver.flow, *flows)]
-    pencil, here = solver.pencil(mode.degree), solver.assembly.system
-    slope = 0.0
-    for equation, *versions in zip(here.equations, *(system.equations for system in systems), strict=True):
-        terms = _changes(weights, equation.terms, [version.terms for version in versions], tables)
-        slope += _in_equation(pencil, mode, pencil.rows[equation.name], terms)
-    for row, terms, *versions in zip(pencil.rows["conditions"], here.conditions,
-                                     *(system.conditions for system in systems), strict=True):
-        slope += _in_condition(pencil, mode, row, _changes(weights, terms, versions, tables))
-    return solver.width(mode.k) * slope
+    return Derivative(solver, name, step)(mode)
+
+
+class Derivative:
+    """d sigma / d name of modes of `solver.flow`, at fixed wavenumber: the differenced equations serve all of them.
+
+    Raises ParameterError where the value lies too close to the ends of its range.
+    """
+
+    def __init__(self, solver: Solver, name: str, step: float = _STEP) -> None:
+        self._solver = solver
+        self._weights, self._flows = _neighbours(solver.flow, name, step)
+        self._systems = [System(flow) for flow in self._flows]
+
+    def __call__(self, mode: Mode) -> complex:
+        solver = self._solver
+        tables = [_symbols(flow, mode) for flow in (solver.flow, *self._flows)]
+        pencil, here = solver.pencil(mode.degree), solver.assembly.system
+        slope = 0.0
+        for equation, *versions in zip(here.equations, *(system.equations for system in self._systems), strict=True):
+            terms = _changes(self._weights, equation.terms, [version.terms for version in versions], tables)
+            slope += _in_equation(pencil, mode, pencil.rows[equation.name], terms)
+        for row, terms, *versions in zip(pencil.rows["conditions"], here.conditions,
+                                         *(system.conditions for system in self._systems), strict=True):
+            slope += _in_condition(pencil, mode, row, _changes(self._weights, terms, versions, tables))
+        return solver.width(mode.k) * slope
 
 
 def _symbols(flow, mode):

@@ -6,6 +6,7 @@ NO_DERIVATIVE = "no derivative"  # with respect to an infinite parameter
 INTERRUPTED = "interrupted"  # what a sweep had not reached when it was stopped
 
 _OUTGROWN = "; outgrown"  # another mode grows faster
+_INSIDE = "; inside"  # an unstable range
 
 
 def is_resolved(status: str) -> bool:
@@ -31,6 +32,11 @@ def is_outgrown(status: str) -> bool:
 def outgrown(status: str) -> str:
     """Return the status of a mode that another one outgrows."""
     return status + _OUTGROWN
+
+
+def inside(status: str) -> str:
+    """Return the status of a neutral value at which other waves grow."""
+    return status + _INSIDE
 
 
 def doubtful(why: str) -> str:

@@ -1,21 +1,23 @@
 """What every flow is: a frozen dataclass of numbers with layers, conditions and a long-wave limit."""
 
 from dataclasses import dataclass, field, fields
-from math import isfinite
+from math import isfinite, isinf
 from typing import Any, ClassVar
 
 from ..checks import LARGEST, as_number, check_options, in_double_precision, shown
 from ..errors import ParameterError
 
+_INSET, _AROUND = 1e-3, 100.0  # of a bounded range left out at its ends; factor about the default of an unbounded one
+
 
 def parameter(default: float, low: float | None = None, high: float | None = None, *, meaning: str, reason: str = "",
-              closed: bool = False, unbounded: bool = False) -> Any:
+              closed: bool = False, unbounded: bool = False, look: tuple[float, float] | None = None) -> Any:
     """Declare a numeric parameter with its open range low < value < high, its meaning and the reason.
 
-    `closed` admits `low` itself as a value, `unbounded` admits inf.
+    `closed` admits `low` itself as a value, `unbounded` admits inf. Neutral values are looked for in the range `look`.
     """
     return field(default=default, metadata={"low": low, "high": high, "meaning": meaning, "reason": reason,
-                                            "closed": closed, "unbounded": unbounded})
+                                            "closed": closed, "unbounded": unbounded, "look": look})
 
 
 def choice(*options: str, meaning: str) -> Any:
@@ -100,3 +102,17 @@ def allowed(rule):
     low = "-inf" if rule["low"] is None else f"{rule['low']:g}"
     high = "inf" if rule["high"] is None else f"{rule['high']:g}"
     return f"{'[' if rule['closed'] else '('}{low}, {high}{']' if rule['unbounded'] else ')'}"
+
+
+def span_of(flow, vary):
+    """The range of a parameter that is searched unless told otherwise: what the flow says, or around its default."""
+    (item,) = (item for item in fields(flow) if item.name == vary)
+    rule = item.metadata
+    if rule["look"]:
+        return rule["look"]
+    low, high = rule["low"], rule["high"]
+    if low is not None and high is not None:
+        return low + _INSET * (high - low), high - _INSET * (high - low)
+    default: Any = item.default
+    middle = abs(default) if default and not isinf(default) else 1.0
+    return middle / _AROUND, middle * _AROUND

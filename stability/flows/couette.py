@@ -20,7 +20,8 @@ class Couette(Flow):
                              "Re: half-width * half the speed difference / kinematic viscosity")
     bottom: ClassVar[float] = -1.0
 
-    Re: float = parameter(1000.0, 0, meaning="Reynolds number of half-width and half the wall speed difference")
+    Re: float = parameter(1000.0, 0, look=(10.0, 1e4),
+                          meaning="Reynolds number of half-width and half the wall speed difference")
 
     def layers(self, names):
         return (Layer("fluid", lambda s: profile(s, self.Re)),)

@@ -22,9 +22,11 @@ class Film(Flow):
                              "We: surface tension / (density * surface speed^2 * depth)")
     surfaces: ClassVar[tuple[str, ...]] = ("s0",)
 
-    Re: float = parameter(10.0, 0, meaning="Reynolds number of depth and surface speed")
-    slope_deg: float = parameter(30.0, 0, 180, meaning="inclination of the plane, degrees; beyond 90 the film hangs")
-    We: float = parameter(0.0, 0, closed=True, meaning="surface tension / (density * surface speed^2 * depth)")
+    Re: float = parameter(10.0, 0, look=(1e-3, 2e4), meaning="Reynolds number of depth and surface speed")
+    slope_deg: float = parameter(30.0, 0, 180, look=(5e-3, 175.0),
+                                 meaning="inclination of the plane, degrees; beyond 90 the film hangs")
+    We: float = parameter(0.0, 0, closed=True, look=(1e-5, 1e3),
+                          meaning="surface tension / (density * surface speed^2 * depth)")
 
     def layers(self, names):
         return (Layer("liquid", lambda s: profile(s, self.Re)),)

@@ -17,7 +17,7 @@ class Poiseuille(Flow):
                              "Re: half-width * centreline speed / kinematic viscosity")
     bottom: ClassVar[float] = -1.0
 
-    Re: float = parameter(1e4, 0, meaning="Reynolds number of half-width and centreline speed")
+    Re: float = parameter(1e4, 0, look=(10.0, 1e5), meaning="Reynolds number of half-width and centreline speed")
 
     def layers(self, names):
         return (Layer("fluid", lambda s: profile(s, self.Re)),)

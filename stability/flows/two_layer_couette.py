@@ -23,12 +23,17 @@ class TwoLayerCouette(Flow):
                              "tension: surface tension / (density of the upper liquid * velocity^2 * length)")
     surfaces: ClassVar[tuple[str, ...]] = ("s0",)
 
-    viscosity_ratio: float = parameter(2.0, 0, meaning="viscosity of the lower liquid over that of the upper")
-    depth_ratio: float = parameter(1.0, 0, meaning="depth of the lower liquid over that of the upper")
-    density_ratio: float = parameter(1.0, 0, closed=True, meaning="density of the lower liquid over that of the upper")
-    Re: float = parameter(10.0, 0, meaning="Reynolds number of the upper liquid and the plate speed")
-    gravity: float = parameter(0.0, 0, closed=True, meaning="g * depth / speed^2 of the upper liquid and plate")
-    tension: float = parameter(0.0, 0, closed=True, meaning="surface tension / (density * speed^2 * depth)")
+    viscosity_ratio: float = parameter(2.0, 0, look=(0.02, 50.0),
+                                       meaning="viscosity of the lower liquid over that of the upper")
+    depth_ratio: float = parameter(1.0, 0, look=(0.05, 20.0),
+                                   meaning="depth of the lower liquid over that of the upper")
+    density_ratio: float = parameter(1.0, 0, closed=True, look=(0.1, 10.0),
+                                     meaning="density of the lower liquid over that of the upper")
+    Re: float = parameter(10.0, 0, look=(0.1, 1e4), meaning="Reynolds number of the upper liquid and the plate speed")
+    gravity: float = parameter(0.0, 0, closed=True, look=(1e-3, 1e2),
+                               meaning="g * depth / speed^2 of the upper liquid and plate")
+    tension: float = parameter(0.0, 0, closed=True, look=(1e-3, 1e2),
+                               meaning="surface tension / (density * speed^2 * depth)")
 
     @property
     def bottom(self):  # type: ignore[override]

@@ -5,12 +5,31 @@ from .common import accuracy_options, add_verb, flow_of, options_of, report
 
 def add(verbs):
     add_verb(verbs, "critical", _run, "the value of a parameter at which the first wavenumber becomes unstable",
-             "stability critical poiseuille --vary Re", vary_option, long_wave_option, accuracy_options)
+             "stability critical poiseuille --vary Re", vary_option, range_option,
+             search_option, long_wave_option, accuracy_options)
 
 
 def vary_option(verb, required=True):
     verb.add_argument("--vary", required=required, metavar="NAME",
-                      help="parameter to solve for; the search starts from its value")
+                      help="parameter to solve for")
+
+
+def range_option(verb):
+    verb.add_argument("--range", metavar="LOW:HIGH", help="values of it to search; default: see stability flows FLOW")
+
+
+def search_option(verb):
+    verb.add_argument("--search", metavar="LOW:HIGH", help="wavenumbers to search (default 0.01:100, and shorter waves "
+                      "in thin layers)")
+
+
+def searched(arguments):
+    """The options --range and --search as arguments of `critical`."""
+    from ..checks import check_range
+
+    names = {"span": "range", "search": "search"}
+    given = {name: getattr(arguments, option, None) for name, option in names.items()}
+    return {name: check_range(value.split(":"), f"--{names[name]}") for name, value in given.items() if value}
 
 
 def long_wave_option(verb):
@@ -25,6 +44,6 @@ def _run(arguments):
     vary = check_parameter_name(flow, arguments.vary.replace("-", "_"))
 
     def compute():
-        return critical(flow, vary, long_wave=arguments.long_wave, strict=False, **options)
+        return critical(flow, vary, long_wave=arguments.long_wave, strict=False, **searched(arguments), **options)
 
     return report(arguments, compute)

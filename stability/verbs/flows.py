@@ -4,7 +4,7 @@ from dataclasses import fields
 from textwrap import wrap
 
 from ..flows import FLOWS
-from ..flows.base import allowed
+from ..flows.base import allowed, span_of
 from ..output import terminal_width, write
 from .common import flag, flow_class
 
@@ -23,7 +23,7 @@ def _run(arguments):
 
 
 def _describe(flow, width):
-    rows = [(flag(item), str(item.default), allowed(item.metadata), item.metadata["meaning"]) for item in fields(flow)]
+    rows = [(flag(item), str(item.default), allowed(item.metadata), _meaning(flow, item)) for item in fields(flow)]
     widths = [max(len(row[i]) for row in rows) for i in range(3)]
     lines = ["  " + "  ".join((*(cell.ljust(w) for cell, w in zip(row, widths, strict=False)), row[3])) for row in rows]
     if width and max(map(len, lines)) > width:
@@ -33,3 +33,11 @@ def _describe(flow, width):
     return "\n".join([f"{flow.name}: {flow.title}", *(f"  {part}" for part in flow.scales.split("; ")), *lines, ""])
 
 
+
+
+def _meaning(flow, item):
+    """What a parameter means, and where neutral values of it are looked for."""
+    if "options" in item.metadata:
+        return item.metadata["meaning"]
+    low, high = span_of(flow, item.name)
+    return f"{item.metadata['meaning']}; searched from {low:g} to {high:g}"

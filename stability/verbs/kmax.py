@@ -4,12 +4,13 @@ from ..errors import ParameterError, StabilityError
 from ..optimum import MODES, Optima, Optimum, k_max_sweep
 from ..status import INTERRUPTED
 from .common import SPEC, accuracy_options, add_verb, collect, flow_of, options_of, report, sweep_of
+from .critical import search_option, searched
 from .methods import method_of, method_options, settings_of
 
 
 def add(verbs):
     add_verb(verbs, "kmax", _run, "the fastest growing wavenumber, over a parameter",
-             "stability kmax dune --over Re=0.1:1e4:41 --plot kmax.png", _over_option, _mode_option,
+             "stability kmax dune --over Re=0.1:1e4:41 --plot kmax.png", _over_option, _mode_option, search_option,
              method_options, accuracy_options)
 
 
@@ -29,8 +30,13 @@ def _run(arguments):
     name, sweep = sweep_of(arguments, flow)
     bvps = [method_of(arguments, one, options["tolerance"]) for one in sweep]
 
+    for option in ("mode", "search"):
+        if bvps[0] is not None and getattr(arguments, option) is not None:
+            raise ParameterError(f"--{option}: --method {arguments.method} does not use it; leave it out")
+
     def compute():
-        optima = k_max_sweep(sweep, mode=arguments.mode, **options) if bvps[0] is None else map(_bounded, sweep, bvps)
+        optima = map(_bounded, sweep, bvps) if bvps[0] is not None else \
+            k_max_sweep(sweep, mode=arguments.mode, **searched(arguments), **options)
         found = collect(arguments, optima, len(sweep),
                         lambda done: [Optimum(one, (), INTERRUPTED) for one in sweep[done:]])
         return Optima(flow, name, tuple(found), arguments.method)

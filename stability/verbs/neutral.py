@@ -4,13 +4,14 @@ from ..errors import ParameterError
 from ..specs import parse_spec
 from ..status import INTERRUPTED
 from .common import SPEC, accuracy_options, add_verb, collect, flow_of, options_of, report, sweep_of
-from .critical import long_wave_option, vary_option
+from .critical import long_wave_option, range_option, searched, vary_option
 
 
 def add(verbs):
     add_verb(verbs, "neutral", _run, "the value of a parameter at which growth vanishes, over another or over k",
              "stability neutral poiseuille --vary Re --k 0.8:1.09:30:lin --plot neutral.png",
-             vary_option, _over_or_k_option, long_wave_option, accuracy_options)
+             vary_option, range_option, _over_or_k_option,
+             long_wave_option, accuracy_options)
 
 
 def _over_or_k_option(verb):
@@ -41,7 +42,8 @@ def _over(arguments, flow, vary, options):
         raise ParameterError(f"--over: {name} is the parameter to solve for; sweep another one")
 
     def compute():
-        found = collect(arguments, critical_sweep(sweep, vary, long_wave=arguments.long_wave, **options), len(sweep),
+        found = collect(arguments, critical_sweep(sweep, vary, long_wave=arguments.long_wave, **searched(arguments),
+                                                  **options), len(sweep),
                         lambda done: [NeutralPoint(one, vary, None, None, None, None, None, INTERRUPTED)
                                       for one in sweep[done:]])
         return NeutralSweep(flow, vary, name, tuple(found))
@@ -60,7 +62,7 @@ def _curve(arguments, flow, vary, options):
                       for k in wavenumbers[done:].tolist())
             return [NeutralCurve(flow, vary, tuple(points), wavenumbers[:0])]
 
-        parts = neutral_parts(flow, vary, wavenumbers, **options)
+        parts = neutral_parts(flow, vary, wavenumbers, **searched(arguments), **options)
         return joined(collect(arguments, parts, len(wavenumbers), rest))
 
     return report(arguments, compute)
