@@ -203,7 +203,7 @@ def _optimum(solver, search, mode):
     maxima = _distinct(sorted(inside, key=lambda one: -one.growth_rate))
     doubt = lost or (_outdone(solver, maxima[0]) if maxima and mode == "leading" else None)
     others = mode == "surface" and solver.flow.rivals
-    status = doubt or _status(looks, found, maxima, others, low, high)
+    status = doubt or _status(solver, looks, found, maxima, others, low, high)
     return Optimum(solver.flow, tuple(maxima), status, settings)
 
 
@@ -231,6 +231,12 @@ def _outdone(solver, best):
     return None if known.sure else known.status[0]
 
 
+def _properly(solver, mode):
+    """A mode of a rough look with full accuracy."""
+    (half,) = (half for half in solver.halves if half.flow == mode.flow)
+    return half.solve(mode.k, mode.rate, (mode.degree, mode.x, mode.y))
+
+
 def _distinct(maxima):
     kept = []
     for one in maxima:
@@ -240,14 +246,16 @@ def _distinct(maxima):
     return kept
 
 
-def _status(looks, found, maxima, others, low, high):
+def _status(solver, looks, found, maxima, others, low, high):
     """Whether the largest maximum is known to be the answer, or why not; `others`: modes that were not looked at."""
     trouble = [one.trouble for one in looks if one.trouble]
     if trouble:
         return trouble[0]
     best = maxima[0].growth_rate if maxima else 0.0
-    below = [node for one in looks for node in one.ends[0] if node.slope.real < 0 and node.growth_rate > best]
-    above = [node for one in looks for node in one.ends[1] if node.slope.real > 0 and node.growth_rate > best]
+    ends = [[_properly(solver, node) for one in looks for node in one.ends[side] if node.growth_rate > best]
+            for side in (0, 1)]
+    below = [node for node in ends[0] if node.slope.real < 0 and node.growth_rate > best + node.error]
+    above = [node for node in ends[1] if node.slope.real > 0 and node.growth_rate > best + node.error]
     outside = [one for one in found if one not in maxima and one.growth_rate > best]
     if above:
         return f"growth still rises at k = {high:g}, the end of the search"
