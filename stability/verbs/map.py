@@ -52,6 +52,10 @@ def _run(arguments):
     bar = Bar(arguments.quiet)
     try:
         found = carry_out(request, workers=workers, journal=journal, report=bar)
+        bar.clear()
+        if found.damaged and not arguments.quiet:
+            print(f"stability: damaged lines of {str(journal)!r} left out: {found.damaged}; the points that no other "
+                  "line holds were computed again", file=sys.stderr)
         status = report(arguments, lambda: found)
     except KeyboardInterrupt:
         bar.clear()
