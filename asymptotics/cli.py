@@ -5,13 +5,13 @@ Exit status: 0 done; 2 bad usage or input; 3 `check` found another order than ex
 
 import argparse
 import json
-import os
 import shutil
 import sys
 from difflib import get_close_matches
 from textwrap import wrap
 
 from . import __version__
+from .streams import drop_output, open_streams, say
 
 VERBS = ("flows", "expand", "check")
 _INDENT = " " * 8  # of what is left of a line wider than the terminal
@@ -72,15 +72,16 @@ class _Help(argparse.Action):
 def main(argv=None) -> int:
     """Run the command line; return the exit status."""
     argv = sys.argv[1:] if argv is None else argv
+    open_streams()
     try:
         status = _run(argv)
         sys.stdout.flush()
         return status
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        drop_output()
         return 141
     except OSError as reason:  # input files report their own; this is the stream
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        drop_output()
         return _fail(f"cannot write to standard output: {reason.strerror}", 2)
     except KeyboardInterrupt:
         return _fail("interrupted", 130)
@@ -106,7 +107,7 @@ def _run(argv) -> int:
 
 
 def _fail(reason, status: int) -> int:
-    print(f"asymptotics: {reason}", file=sys.stderr)
+    say(f"asymptotics: {reason}")
     return status
 
 
@@ -271,6 +272,8 @@ def _read_csv(name: str):
 
     import numpy as np
 
+    if name == "-" and sys.stdin is None:
+        raise BadUsage("cannot read standard input: it is closed; give the name of a file")
     try:
         with (open(name, encoding="utf-8", newline="") if name != "-" else _keep_open(sys.stdin)) as stream:
             lines = stream.read().splitlines()

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import status
-from .checks import check_integer, check_options, check_wavenumbers, flat, shown
+from .checks import check_file_name, check_integer, check_options, check_wavenumbers, flat, shown
 from .errors import ParameterError, StabilityError, WorkersLost
 from .flows.base import check_flow, check_parameter
 from .journal import Journal
@@ -325,8 +325,8 @@ def _check_means(executor, workers, journal):
     """Return the number of workers, or raise a ParameterError where a map cannot be computed with this."""
     if executor is not None and not callable(getattr(executor, "submit", None)):
         raise ParameterError(f"executor must be a concurrent.futures.Executor (got {shown(executor)})")
-    if not isinstance(journal, str | PathLike | None):
-        raise ParameterError(f"journal must be the name of a file (got {shown(journal)})")
+    if journal is not None:
+        check_file_name(journal, "journal")
     return check_integer(workers, "workers", 1, MOST_WORKERS)
 
 

@@ -648,7 +648,7 @@ def test_bad_arguments_are_refused_before_any_file_is_touched(tmp_path, argument
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("journal", [5, b"kept"])
+@pytest.mark.parametrize("journal", [5, b"kept", "", "a\0b"])
 def test_a_journal_is_the_name_of_a_file(journal):
     with pytest.raises(ParameterError, match=r"^journal must be the name of a file \(got "):
         parameter_map(BED, RE, journal=journal)
