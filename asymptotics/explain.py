@@ -6,7 +6,7 @@ needed, the coefficient there differs by a_q. This is for series in rising power
 """
 
 from bisect import bisect
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
@@ -111,8 +111,9 @@ def _windows(points):
 def extrapolate(k, values, error) -> Fit:
     """The constant that real values of shape (points,) tend to as k -> 0, by powers of the step that fits best."""
     count = min(_TERMS, len(k) - 1)
-    return min((_fit(k, values, error, [step * number for number in range(count)]) for step in _STEPS),
+    best = min((_fit(k, values, error, [step * number for number in range(count)]) for step in _STEPS),
                key=lambda fit: fit.misfit)
+    return replace(best, error=best.error * min(1.0, best.misfit))  # the fit may be far better than `BEND`
 
 
 def _fit(k, difference, error, powers) -> Fit:
