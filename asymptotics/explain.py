@@ -14,6 +14,7 @@ import numpy as np
 BEND = 0.01  # relative departure of the difference from a few powers that is not blamed on the numerics
 _TERMS = 4  # of a fit, if there are more points than that
 _STEPS = 1 / 3, 1 / 2, 2 / 3, 1.0, 2.0  # between successive powers of the problems there are
+_ROUNDING = np.finfo(float).eps  # of the largest difference: where another one vanishes
 _FEWEST = 6  # points of a fit, if there are as many
 _SHRINK = 0.9  # of the number of points from one attempt to the next
 _GOOD = 1.0  # misfit of a fit that explains the difference
@@ -77,13 +78,13 @@ class Explanation:
 def explain(k, difference, error, below, expected: float, step: float, coefficients) -> Explanation:
     """Fit a real difference of shape (points,), k increasing.
 
-    below          powers under the expected one that may occur
+    below          powers that may occur under the expected one
     step           distance from the expected power to the next ones
     coefficients   {power: coefficient of the series}: those that are in every fit that begins below them
     """
     beyond = [expected + step * number for number in range(_TERMS)]
     known = sorted(power for power in coefficients if power < expected)
-    candidates = [*reversed(known), *(power for power in reversed(below) if power not in known)]
+    candidates = [*reversed(known), *(power for power in reversed(below) if power < expected and power not in known)]
     for points in _windows(len(k)):
         count = min(_TERMS, points - 1)
 
@@ -118,7 +119,8 @@ def extrapolate(k, values, error) -> Fit:
 
 def _fit(k, difference, error, powers) -> Fit:
     """Weighted least squares; a misfit beyond the error of the numerics enlarges the error of the coefficient."""
-    weight = 1 / np.hypot(error, BEND * np.abs(difference))
+    size = np.abs(difference)
+    weight = 1 / (np.hypot(error, BEND * size) + (_ROUNDING * size.max() or 1.0))
     columns = np.column_stack([(k / k[-1]) ** power for power in powers]) * weight[:, None]
     scale = np.linalg.norm(columns, axis=0)
     values, _, _, _ = np.linalg.lstsq(columns / scale, difference * weight, rcond=None)

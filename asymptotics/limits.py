@@ -30,8 +30,7 @@ _NAMES = {"real": "real part", "imag": "imaginary part"}
 
 
 class OrderMismatch(AssertionError):
-    """The difference falls at another order than expected."""
-
+    """The difference falls at another order than expected; `comparison` holds the numbers."""
 
     def __init__(self, comparison: "Comparison"):
         super().__init__(f"{comparison.verdict}\n{comparison.table()}")
@@ -75,10 +74,11 @@ class Part:
     @property
     def remark(self) -> str:
         """What the verdict of the whole adds of this part."""
-        if self.silence:
+        if self.observed is None:
             return f"{_NAMES[self.name]} {self.silence}"
         order = f"{_NAMES[self.name]} of order {self.observed:.2f}, expected {self.expected:.4g}"
-        return order if self.in_order or self.explanation is None else f"{order}: {self.explanation}"
+        seen = self.explanation is None or abs(self.observed - self.expected) <= self.tolerance
+        return order if seen else f"{order}: {self.explanation}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,19 +142,19 @@ class Comparison:
 
 @dataclass(frozen=True)
 class _Claim:
-    """What is known of the difference: its powers in the real and in the imaginary part, and those below them."""
+    """What is known of the difference, by part where a dict.
+
+    parts   the powers to expect
+    below   lower ones that show where a coefficient is wrong
+    """
 
     expected: float
     parts: dict[str, float]
+    below: dict[str, list[float]]
     step: float
     coefficients: dict[str, dict[float, float]]
     correction: float | None
     towards: int = 1
-
-    def below(self, part: str) -> list[float]:
-        """Powers that show where a coefficient of the part is wrong or spurious, in rising order."""
-        step = min(self.step, 1.0)
-        return (step * np.arange(np.ceil(self.parts[part] / step - ROUNDING))).tolist()
 
 
 def compare(numeric, series, k, expected=None, *, part: str = "both", correction="known", error=None,
@@ -190,7 +190,7 @@ def compare(numeric, series, k, expected=None, *, part: str = "both", correction
     if not near.all():
         left_out += (f"{(~near).sum()} of {len(k)} points left out: k above {highest:.4g}",)
     if correction == "known":
-        correction = claim.correction if len(np.unique(k[near])) > MANY else None
+        correction = claim.correction if near.sum() > MANY else None
     parts = tuple(_part(name, claim, k[near], numeric[near], series[near], floor[near], correction, tolerance)
                   for name in PARTS[part])
     k, numeric, series, floor = (values[heard & near] for values in (k, numeric, series, floor))
@@ -276,9 +276,14 @@ def _points(numeric, series, k, error):
     if (k <= 0).any():
         raise ValueError(f"k must be positive (got {k.min():g})")
     known = np.isfinite(k) & np.isfinite(numeric) & np.isfinite(series) & np.isfinite(floor)
-    left_out = () if known.all() else (f"{(~known).sum()} of {len(k)} points left out: not a number, first at "
-                                       f"k = {k[~known][0]:g}",)
-    return k[known], numeric[known], series[known], floor[known], left_out
+    left_out: tuple[str, ...] = ()
+    if not known.all():
+        left_out = (f"{(~known).sum()} of {len(k)} points left out: not a number, first at k = {k[~known][0]:g}",)
+    k, numeric, series, floor = (values[known] for values in (k, numeric, series, floor))
+    k, once = np.unique(k, return_index=True)
+    if len(once) < len(numeric):
+        left_out += (f"{len(numeric) - len(once)} of {len(numeric)} points left out: k given before",)
+    return k, numeric[once], series[once], floor[once], left_out
 
 
 def _values(values, k):
@@ -296,8 +301,8 @@ def _values(values, k):
 
 
 def _only(part, values):
-    """The whole values, or a part as complex numbers without imaginary part."""
-    return values if part == "both" else getattr(values, part).astype(complex)
+    """The complex values, without their imaginary or real part where only the other is asked for."""
+    return {"both": values, "real": values.real + 0j, "imag": 1j * values.imag}[part]
 
 
 # -- what is claimed -------------------------------------------------------------------------------------
@@ -309,7 +314,9 @@ def _claim(series, expected) -> _Claim:
     if expected is None:
         raise TypeError("expected must be given unless the series is an Expansion")
     power = float(expected)
-    return _Claim(power, dict.fromkeys(_NAMES, power), 1.0, dict.fromkeys(_NAMES, {}), None, -1 if power < 0 else 1)
+    below = np.arange(max(0.0, np.ceil(power))).tolist()
+    return _Claim(power, dict.fromkeys(_NAMES, power), dict.fromkeys(_NAMES, below), 1.0,
+                  dict.fromkeys(_NAMES, {}), None, -1 if power < 0 else 1)
 
 
 def _claim_of_expansion(law, expected) -> _Claim:
@@ -320,9 +327,15 @@ def _claim_of_expansion(law, expected) -> _Claim:
     towards = 1 if first > float(max(values)) else -1
     coefficients = {name: {float(power): getattr(c, name) for power, c in values.items() if not vanishes(c, name)}
                     for name in _NAMES}
+    below = {name: [float(power) for power in values if _has(law, name, power)] for name in _NAMES}
     step = 2 * spacing if law.alternates and spacing == 1 else spacing
-    return _Claim(first, {name: float(power) for name, power in following.items()}, step, coefficients,
+    return _Claim(first, {name: float(power) for name, power in following.items()}, below, step, coefficients,
                   spacing if towards > 0 else None, towards)
+
+
+def _has(law, part, power) -> bool:
+    """Whether a power can occur in a part."""
+    return not law.alternates or power % 2 == (part == "imag")
 
 
 # -- one part --------------------------------------------------------------------------------------------
@@ -345,7 +358,7 @@ def _part(name, claim, k, numeric, series, floor, correction, tolerance) -> Part
     order = _order(k, np.abs(difference), floor, correction)
     why = None
     if claim.towards > 0:
-        why = explain(k, difference, floor, claim.below(name), expected, claim.step, claim.coefficients[name])
+        why = explain(k, difference, floor, claim.below[name], expected, claim.step, claim.coefficients[name])
     return Part(name, expected, order, tolerance, claim.towards, why)
 
 

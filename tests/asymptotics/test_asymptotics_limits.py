@@ -102,6 +102,8 @@ def test_a_wrong_coefficient_does_not_hide_behind_the_other_part(film, power, fa
     assert relative == pytest.approx(factor, rel=0.02)
     assert f"the coefficient of k^{power} differs by" in found.verdict
     assert compare(wrong, law, WIDE, error=film.error, part=found.parts[0 if power == 1 else 1].name).agrees
+    alone = compare(wrong, law, WIDE, error=film.error, part=part.name)
+    assert (alone.agrees, alone.parts[0].explanation) == (False, part.explanation)
 
 
 def test_each_part_has_its_own_next_power(film):
@@ -187,6 +189,12 @@ def test_points_without_a_number_are_left_out_and_said():
         compare(cosine, cosine, [0.0, 1.0, 2.0, 3.0], 4)
 
 
+def test_points_given_twice_count_once():
+    found = compare(cosine, lambda k: 1 - k**2 / 2, [*K, *K[:3]], 4)
+    assert found.left_out == ("3 of 12 points left out: k given before",)
+    assert found.agrees
+
+
 def test_two_decades_are_used_unless_more_are_asked_for():
     k = np.geomspace(1e-3, 3, 20)
     found = compare(cosine, lambda k: 1 - k**2 / 2, k, 4)
@@ -226,7 +234,7 @@ def test_frames_of_ours_are_hidden():
 
 @pytest.mark.parametrize(("function", "limit"), [
     (cosine, 1), (lambda k: np.sin(k) / k, 1.0), (lambda k: 2j + k ** (1 / 3), 2j), (lambda k: 3 + k + 1j * k**2, 3),
-    (lambda k: k + 1j * k, 0), (lambda k: -0.4 + math.sqrt(k), -0.4),
+    (lambda k: k + 1j * k, 0), (lambda k: 0 * k, 0), (lambda k: -0.4 + math.sqrt(k), -0.4),
 ])
 def test_limits(function, limit):
     assert assert_limit(function, limit, K) == pytest.approx(1 if limit else 0, abs=1e-4)
