@@ -12,11 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .flows import expand
+    from .limits import assert_limit, assert_order
     from .series import Expansion
 
-__all__ = ["Expansion", "expand"]
+__all__ = ["Expansion", "assert_limit", "assert_order", "expand"]
 
-_LATER = {"Expansion": "series", "expand": "flows", "flows": "flows"}
+_LATER = {"Expansion": "series", "assert_limit": "limits", "assert_order": "limits", "expand": "flows",
+          "flows": "flows"}
 
 
 def __getattr__(name: str) -> Any:

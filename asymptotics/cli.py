@@ -5,15 +5,17 @@ Exit status: 0 done; 2 bad usage or input; 3 `check` found another order than ex
 
 import argparse
 import json
-import os
 import shutil
 import sys
 from difflib import get_close_matches
 from textwrap import wrap
 
 from . import __version__
+from .streams import drop_output, open_streams, say
 
 VERBS = ("flows", "expand", "check")
+_REMEDY = "give the output of stability dispersion ... --csv"
+_MARK = "\ufeff"  # of the byte order, which some programs write first
 _INDENT = " " * 8  # of what is left of a line wider than the terminal
 
 
@@ -72,15 +74,16 @@ class _Help(argparse.Action):
 def main(argv=None) -> int:
     """Run the command line; return the exit status."""
     argv = sys.argv[1:] if argv is None else argv
+    open_streams()
     try:
         status = _run(argv)
         sys.stdout.flush()
         return status
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        drop_output()
         return 141
     except OSError as reason:  # input files report their own; this is the stream
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        drop_output()
         return _fail(f"cannot write to standard output: {reason.strerror}", 2)
     except KeyboardInterrupt:
         return _fail("interrupted", 130)
@@ -106,7 +109,7 @@ def _run(argv) -> int:
 
 
 def _fail(reason, status: int) -> int:
-    print(f"asymptotics: {reason}", file=sys.stderr)
+    say(f"asymptotics: {reason}")
     return status
 
 
@@ -132,7 +135,9 @@ def _parser(argv) -> _Parser:
     check.add_argument("flow", metavar="FLOW", help="the flow that the numbers belong to")
     check.add_argument("file", nargs="?", default="-", metavar="CSV", help="file, or - for standard input")
     check.add_argument("--tolerance", default="0.05", metavar="T", help="allowed difference of the orders")
-    check.add_argument("--k-max", metavar="K", help="leave out larger wavenumbers (default: the lowest two decades)")
+    check.add_argument("--part", choices=("real", "imag", "both"), default="both",
+                       help="real: growth rates only; imag: phase speeds only; both: each by itself")
+    check.add_argument("--k-max", metavar="K", help="leave out larger wavenumbers (default: those beyond two decades)")
     check.set_defaults(run=_check)
     for verb in (expand, check):
         verb.add_argument("--order", metavar="M", help="highest power of the gauge, e.g. 2 or 4/3")
@@ -187,13 +192,14 @@ def _expand(arguments) -> int:
 
 
 def _check(arguments) -> int:
-    import numpy as np
-
     from . import flows
-    from .limits import compare
+    from .limits import OrderMismatch, assert_order
 
     _load(arguments.flow)
-    header, rows = _read_csv(arguments.file)
+    tolerance, largest = _positive(arguments.tolerance, "--tolerance"), None
+    if arguments.k_max is not None:
+        largest = _positive(arguments.k_max, "--k-max")
+    header, columns, left_out = _read_csv(arguments.file)
     if header.get("flow", arguments.flow) != arguments.flow:
         raise BadUsage(f"{_source(arguments.file)} holds the flow {header['flow']}, asked for {arguments.flow}; "
                        f"run: asymptotics check {header['flow']}")
@@ -205,14 +211,30 @@ def _check(arguments) -> int:
         problem = f"needs {', '.join('--' + name for name in missing)}" if missing else "is not a series in k"
         raise BadUsage(f"regime {expansion.regime} {problem}: "
                        "check takes a regime in powers of k with all parameters given")
-    rows = rows[:, rows[0] <= _largest(arguments, rows[0])]
-    k, growth, speed, error = rows
-    gap = float(flows.load(arguments.flow).REGIMES[expansion.regime].step)
-    comparison = compare(growth - 1j * k * speed, expansion.function()(k), k, float(expansion.next_power),
-                         correction=gap if len(np.unique(k)) > 5 else None, error=error,
-                         tolerance=_positive(arguments.tolerance, "--tolerance"))
-    print(comparison.table())
-    print(f"# {comparison.verdict}")
+    sigma, part = _sigma(columns, arguments)
+    try:
+        comparison = assert_order(sigma, expansion, columns["k"], part=part, error=columns["error"], largest=largest,
+                                  tolerance=tolerance)
+    except OrderMismatch as mismatch:
+        comparison = mismatch.comparison
+    for note in (*left_out, *comparison.left_out):
+        say(f"asymptotics: {note}")
+    return _judge(comparison)
+
+
+def _sigma(columns, arguments):
+    """The complex growth rate, and which part of it is known and asked for."""
+    if "phase_speed" in columns:
+        return columns["growth_rate"] - 1j * columns["k"] * columns["phase_speed"], arguments.part
+    if arguments.part == "imag":
+        raise BadUsage(f"{_source(arguments.file)} has no column phase_speed, which --part imag needs")
+    return columns["growth_rate"], "real"
+
+
+def _judge(comparison) -> int:
+    """Print a comparison, what fails with the verdict first; return the exit status."""
+    verdict, table = f"# {comparison.verdict}", comparison.table()
+    print(*((table, verdict) if comparison.agrees else (verdict, table)), sep="\n")
     return 0 if comparison.agrees else _fail(comparison.verdict, 3)
 
 
@@ -245,12 +267,6 @@ def _given(arguments) -> dict[str, str]:
             if key.startswith("parameter ") and value is not None}
 
 
-def _largest(arguments, k) -> float:
-    if arguments.k_max is not None:
-        return _positive(arguments.k_max, "--k-max")
-    return 100 * (1 + 1e-9) * k.min()
-
-
 def _positive(text: str, flag: str) -> float:
     try:
         value = float(text)
@@ -266,34 +282,53 @@ def _source(name: str) -> str:
 
 
 def _read_csv(name: str):
-    """Header {key: text} from `# key: value` lines, and rows k, growth_rate, phase_speed, error, sorted by k."""
+    """Header {key: text} from `# key: value` lines, columns {name: array (rows,)}, and what has been left out."""
     import csv
 
-    import numpy as np
-
-    try:
-        with (open(name, encoding="utf-8", newline="") if name != "-" else _keep_open(sys.stdin)) as stream:
-            lines = stream.read().splitlines()
-    except (OSError, UnicodeDecodeError) as reason:
-        raise BadUsage(f"cannot read {_source(name)}: {getattr(reason, 'strerror', None) or 'not text'}; "
-                       "give a file written by stability dispersion ... --csv") from None
+    lines = [line for line in _read(name).removeprefix(_MARK).splitlines() if line.strip()]
     comments = [line[1:].partition(":") for line in lines if line.startswith("#")]
     header = {key.strip(): value.strip() for key, _, value in comments}
-    reader = csv.DictReader(line for line in lines if line.strip() and not line.startswith("#"))
-    columns = ("k", "growth_rate", "phase_speed")
-    absent = [column for column in columns if column not in (reader.fieldnames or ())]
-    if absent:
-        raise BadUsage(f"{_source(name)} has no column {', '.join(absent)}; "
-                       "give the output of stability dispersion ... --csv")
+    names, *rows = [[cell.strip() for cell in row] for row in csv.reader(
+        (line for line in lines if not line.startswith("#")), skipinitialspace=True)] or [[]]
+    if absent := [column for column in ("k", "growth_rate") if column not in names]:
+        empty = "" if names else "is empty: it "
+        raise BadUsage(f"{_source(name)} {empty}has no column {', '.join(absent)}; {_REMEDY}")
+    return header, *_columns(name, names, [dict(zip(names, row, strict=False)) for row in rows])
+
+
+def _read(name: str) -> str:
+    if name == "-" and sys.stdin is None:
+        raise BadUsage("cannot read standard input: it is closed; give the name of a file")
     try:
-        rows = sorted((*(float(row[column]) for column in columns), float(row.get("error") or 0))
-                      for row in reader if row.get("status", "resolved") == "resolved")
-    except (TypeError, ValueError):
-        raise BadUsage(f"{_source(name)}: a row is not numbers; "
-                       "give the output of stability dispersion ... --csv") from None
-    if not rows or rows[0][0] <= 0:
-        raise BadUsage(f"{_source(name)} has no resolved row with k > 0; give at least four small wavenumbers")
-    return header, np.array(rows).T
+        with (open(name, encoding="utf-8", newline="") if name != "-" else _keep_open(sys.stdin)) as stream:
+            return stream.read()
+    except (OSError, ValueError) as reason:
+        why = getattr(reason, "strerror", None) or ("not text" if isinstance(reason, UnicodeError) else "no such name")
+        raise BadUsage(f"cannot read {_source(name)}: {why}; give a file written by stability dispersion ... --csv"
+                       ) from None
+
+
+def _columns(name: str, names, rows):
+    """Numbers of the resolved rows; the phase speed where there is one, the error 0 where there is none."""
+    import numpy as np
+
+    from .limits import FEWEST
+
+    resolved = [row for row in rows if row.get("status", "resolved").startswith("resolved")]
+    wanted = [column for column in ("k", "growth_rate", "phase_speed") if column in names]
+    if "phase_speed" not in names and len(resolved) < FEWEST:
+        raise BadUsage(f"{_source(name)} has no column phase_speed, and of growth rates alone {FEWEST} are needed "
+                       f"(got {len(resolved)} resolved); {_REMEDY}")
+    try:
+        columns = {column: np.array([float(row[column]) for row in resolved]) for column in wanted}
+        columns["error"] = np.array([abs(float(row.get("error") or 0)) for row in resolved])
+    except (KeyError, ValueError):
+        raise BadUsage(f"{_source(name)}: a row is not numbers; {_REMEDY}") from None
+    if not (columns["k"] > 0).any() or (columns["k"] <= 0).any():
+        raise BadUsage(f"{_source(name)} has no resolved row with k > 0, or one with another k; give at least four "
+                       "small wavenumbers")
+    others = [row["k"] for row in rows if row not in resolved]
+    return columns, [f"{len(others)} of {len(rows)} rows left out: not resolved, first at k = {k}" for k in others[:1]]
 
 
 class _keep_open:

@@ -6,11 +6,13 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import sympy as sp
 
 k = sp.Symbol("k", positive=True)
+_ROUNDING = 1e-14  # relative part of a coefficient that is none
 
 
 class StillSymbolic(ValueError):
@@ -25,6 +27,7 @@ class Expansion:
     next_power   power of the first term left out: the order at which the error must fall
     parameters   {name: value, or None while symbolic}
     wavenumber   k, in terms of the gauge if that varies it
+    step         distance between successive powers; None takes it from those that there are
     """
 
     flow: str
@@ -35,6 +38,26 @@ class Expansion:
     gauge: sp.Symbol = k
     quantity: str = "sigma"
     wavenumber: sp.Expr = k
+    step: sp.Rational | None = None
+
+    @cached_property
+    def spacing(self) -> sp.Rational:
+        """Distance between successive powers."""
+        powers = sorted([*self.terms, self.next_power])
+        return self.step or gcd_of([after - before for before, after in pairwise(powers)])
+
+    @cached_property
+    def alternates(self) -> bool:
+        """Whether coefficients of even powers are real and those of odd ones imaginary: sigma(-k) = conj sigma(k)."""
+        values = self.values()
+        return self.gauge == k and all(p.is_integer and vanishes(c, "real" if p % 2 else "imag")
+                                       for p, c in values.items())
+
+    @property
+    def next_powers(self) -> dict[str, sp.Rational]:
+        """Power of the first term left out in the real and in the imaginary part."""
+        late = {"real": self.next_power % 2, "imag": 1 - self.next_power % 2} if self.alternates else {}
+        return {part: self.next_power + late.get(part, 0) for part in ("real", "imag")}
 
     @cached_property
     def expression(self) -> sp.Expr:
@@ -107,6 +130,16 @@ class Expansion:
     def _part(self, part) -> sp.Expr:
         return sp.Add(*(part(sp.expand_complex(c) if c.is_Number else c) * self.gauge**power
                         for power, c in self.terms.items()))
+
+
+def vanishes(coefficient: complex | None, part: str) -> bool:
+    """Whether the real or imaginary part ("real", "imag") of a coefficient is but rounding."""
+    return coefficient is not None and abs(getattr(coefficient, part)) <= _ROUNDING * abs(coefficient)
+
+
+def gcd_of(steps) -> sp.Rational:
+    """The largest rational number of which all the given ones are multiples."""
+    return sp.Rational(sp.igcd(*(step.p for step in steps), 0), sp.ilcm(*(step.q for step in steps), 1))
 
 
 def power_of_i(power) -> sp.Expr:

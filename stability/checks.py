@@ -1,5 +1,6 @@
-"""What a user may pass: numbers, wavenumbers, accuracy. Anything else is refused in one line."""
+"""What a user may pass: numbers, wavenumbers, accuracy, names of files. Anything else is refused in one line."""
 
+import os
 from math import inf
 
 import numpy as np
@@ -100,3 +101,23 @@ def check_range(values, name):
     if len(numbers) != 2 or not numbers[0] < numbers[1]:
         raise ParameterError(f"{name}: give a range (low, high) of positive numbers (got {shown(values)})")
     return numbers[0], numbers[1]
+
+
+def as_file_name(path):
+    """The name of a file as text, or None if no file can have it: neither text nor a path, empty, or with a NUL."""
+    name = os.fspath(path) if isinstance(path, str | os.PathLike) else None
+    if not isinstance(name, str) or not name or "\0" in name:
+        return None
+    try:
+        os.fsencode(name)
+    except UnicodeEncodeError:
+        return None
+    return name
+
+
+def check_file_name(path, name):
+    """Return the name of a file as text, or raise a ParameterError that begins with `name`."""
+    text = as_file_name(path)
+    if text is None:
+        raise ParameterError(f"{name} must be the name of a file (got {shown(path)})")
+    return text

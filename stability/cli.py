@@ -4,15 +4,16 @@ Exit status: 0 done and resolved; 2 bad usage or input; 3 computed, but unresolv
 """
 
 import argparse
-import os
 import sys
 
 from . import __version__
 from .errors import ParameterError, StabilityError
+from .streams import drop_output, open_streams, say
 
 
 def main(argv=None):
     """Run the command line; return the exit status."""
+    open_streams()
     try:
         return _run(argv)
     except ParameterError as reason:
@@ -20,10 +21,10 @@ def main(argv=None):
     except StabilityError as reason:
         return _fail(reason, 3)
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        drop_output()
         return 141
     except OSError as reason:  # output files report their own; this is the stream
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        drop_output()
         return _fail(f"cannot write to standard output: {reason.strerror}", 2)
     except KeyboardInterrupt:
         return _fail("interrupted", 130)
@@ -41,7 +42,7 @@ def _run(argv):
 
 
 def _fail(reason, status):
-    print(f"stability: {reason}", file=sys.stderr)
+    say(f"stability: {reason}")
     return status
 
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import status
-from .checks import check_integer, check_options, check_wavenumbers, flat, shown
+from .checks import check_file_name, check_integer, check_options, check_wavenumbers, flat, shown
 from .errors import ParameterError, StabilityError, WorkersLost
 from .flows.base import check_flow, check_parameter
 from .journal import Journal
@@ -170,10 +170,12 @@ class Map(Record):
     """Results of a `Request` at every point of its grid; `map[name]` is a column shaped by the axes, or an axis.
 
     Columns hold nan where there is no number; `status` then says why. `table` (points, columns) holds None there.
+    `damaged` counts the lines of the journal that could not be used; what they alone held was computed again.
     """
 
     request: Request
     table: tuple[tuple[Any, ...], ...] = field(repr=False)
+    damaged: int = field(default=0, compare=False)
 
     @property
     def flow(self) -> Any:  # type: ignore[override]
@@ -277,7 +279,8 @@ def parameter_map(flow: "Flow", over: "Mapping[str, ArrayLike]", quantity: str |
     Work is done in this process, in `workers` processes of our own (a script then needs `if __name__ == "__main__":`
     around what it does, and cannot come from standard input), or on any `concurrent.futures.Executor`, where pieces
     that fail are submitted again. `journal` names a file that keeps finished pieces: the same call resumes from it;
-    delete it once the map is stored. `report(done, total)` is called as points are done.
+    delete it once the map is stored. Lines of it that are damaged are computed again, and counted in `damaged` of the
+    map. `report(done, total)` is called as points are done.
 
     >>> from stability import flows
     >>> found = parameter_map(flows.Dune(), {"shields": [1.5, 2.0], "Re": [10.0, 100.0]})
@@ -298,7 +301,8 @@ def carry_out(request, *, executor=None, workers=1, journal=None, report=None):
     """Return the `Map` of a request; see `parameter_map`."""
     workers = _check_means(executor, workers, journal)
     pieces, report = request.pieces(), report or (lambda done, total: None)
-    with Journal(journal, request.description()) if journal is not None else nullcontext() as kept:
+    shapes = [(piece.points, len(request.results)) for piece in pieces]
+    with Journal(journal, request.description(), shapes) if journal is not None else nullcontext() as kept:
         done = dict(kept.done) if kept else {}
         left = [piece for piece in pieces if piece.index not in done]
         count = request.size - sum(piece.points for piece in left)
@@ -310,15 +314,16 @@ def carry_out(request, *, executor=None, workers=1, journal=None, report=None):
                 done[piece.index] = rows
                 count += piece.points
                 report(count, request.size)
-    return Map(request, tuple(tuple(row) for piece in pieces for row in done[piece.index]))
+    table = tuple(tuple(row) for piece in pieces for row in done[piece.index])
+    return Map(request, table, kept.damaged if kept else 0)
 
 
 def _check_means(executor, workers, journal):
     """Return the number of workers, or raise a ParameterError where a map cannot be computed with this."""
     if executor is not None and not callable(getattr(executor, "submit", None)):
         raise ParameterError(f"executor must be a concurrent.futures.Executor (got {shown(executor)})")
-    if not isinstance(journal, str | PathLike | None):
-        raise ParameterError(f"journal must be the name of a file (got {shown(journal)})")
+    if journal is not None:
+        check_file_name(journal, "journal")
     return check_integer(workers, "workers", 1, MOST_WORKERS)
 
 

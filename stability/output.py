@@ -12,9 +12,11 @@ from contextlib import contextmanager
 from dataclasses import fields
 from math import isinf
 from pathlib import Path
+from stat import S_ISDIR
 from typing import Any
 
 from . import __version__
+from .checks import check_file_name
 from .errors import ParameterError
 from .status import RESOLVED
 
@@ -136,38 +138,50 @@ def _cell(key, value, digits):
 def whole_file(path: str | os.PathLike[str], name: str) -> Iterator[Path]:
     """Yield a temporary path beside `path` that replaces it when the block ends well.
 
-    Raises ParameterError, naming the option `name`, where the file cannot be written.
+    Raises ParameterError, naming the option or method `name`, where the file cannot be written.
     """
-    path = Path(path)
-    temporary = path if _is_stream(path) else _temporary(path, name)
+    target = _path(path, name)
+    temporary = target if _is_stream(target) else _temporary(target, name)
     try:
         yield temporary
-        if temporary is path:
+        if temporary is target:
             return
-        if path.is_dir():
-            raise ParameterError(f"{name}: cannot write {str(path)!r}: it is a directory")
+        _check_target(target, name)
         os.chmod(temporary, 0o666 & ~_umask())
-        os.replace(temporary, os.path.realpath(path))
+        os.replace(temporary, os.path.realpath(target))
     except OSError as reason:
-        raise ParameterError(f"{name}: cannot write {str(path)!r}: {reason.strerror}") from None
+        raise ParameterError(f"{name}: cannot write {str(target)!r}: {reason.strerror}") from None
     finally:
-        if temporary is not path:
+        if temporary is not target:
             temporary.unlink(missing_ok=True)
 
 
 def check_writable(path: str | os.PathLike[str], name: str) -> None:
     """Raise the error that `whole_file` would raise, before the work is done."""
-    path = Path(path)
-    if _is_stream(path):
+    target = _path(path, name)
+    if _is_stream(target):
         return
-    _temporary(path, name).unlink()
-    if path.is_dir():
-        raise ParameterError(f"{name}: cannot write {str(path)!r}: it is a directory")
+    _temporary(target, name).unlink()
+    _check_target(target, name)
+
+
+def _check_target(path, name):
+    """Raise the error that replacing `path` would raise."""
+    try:
+        why = "it is a directory" if S_ISDIR(os.stat(path).st_mode) else ""
+    except OSError as reason:
+        why = "" if isinstance(reason, FileNotFoundError) else str(reason.strerror)
+    if why:
+        raise ParameterError(f"{name}: cannot write {str(path)!r}: {why}")
+
+
+def _path(path, name):
+    return Path(check_file_name(path, f"{name}: path"))
 
 
 def _is_stream(path):
     """Whether the path is a device or a pipe: written to directly, and never replaced."""
-    return path.exists() and not path.is_file() and not path.is_dir()
+    return os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path)
 
 
 def _temporary(path, name):

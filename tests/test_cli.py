@@ -201,6 +201,17 @@ BAD = [
     (("dispersion", "dune", "--k", "1", "--plot", "x.gif"), "--plot: the file must end in .png, .pdf, .svg"),
     (("dispersion", "dune", "--k", "1", "-o", "/nowhere/x.csv"), "-o: cannot write '/nowhere/x.csv'"),
     (("dispersion", "dune", "--k", "1", "--plot", "/nowhere/x.png"), "--plot: cannot write '/nowhere/x.png'"),
+    (("dispersion", "dune", "--k", "1", "-o", ""), "-o: path must be the name of a file (got '')"),
+    (("dispersion", "dune", "--k", "1", "-o", "a\0b"), "-o: path must be the name of a file (got 'a\\x00b')"),
+    (("dispersion", "dune", "--k", "1", "-o", "/"), "-o: cannot write '/': it is a directory"),
+    (("dispersion", "dune", "--k", "1", "-o", "x" * 300), "File name too long"),
+    (("dispersion", "dune", "--k", "1", "--plot", ""), "--plot: the file must end in .png, .pdf, .svg (got '')"),
+    (("dispersion", "dune", "--k", "1", "--plot", "\0.png"), "--plot: path must be the name of a file (got "),
+    (("map", "dune", "--over", "Re=1,2", "-o", "a\0.csv"), "-o: path must be the name of a file"),
+    (("map", "dune", "--over", "Re=1,2", "-o", ""), "-o: the file must end in .csv, .json, .nc"),
+    *((("dispersion", "dune", "--k", "1", *form, "-o", f"x{ending}"), f"-o: {ending.lower()} cannot be written; .csv, "
+       f".json, .nc are known, .txt and no ending give a table (got 'x{ending}')")
+      for form, ending in (([], ".xlsx"), ([], ".h5"), ([], ".npz"), ([], ".PNG"), (["--csv"], ".parquet"))),
     ((), "required: VERB"),
     (("dance",), "invalid choice: 'dance'"),
 ]
@@ -233,7 +244,8 @@ def test_files_are_written_whole(tmp_path, capsys):
 
 
 def test_the_ending_of_a_file_gives_its_form(tmp_path, capsys):
-    for name, start in (("a.csv", "# flow: vortex"), ("a.json", "{"), ("a.txt", "k  "), ("a", "k  ")):
+    for name, start in (("a.csv", "# flow: vortex"), ("a.json", "{"), ("a.txt", "k  "), ("a", "k  "), ("a.5", "k  "),
+                        ("A.CSV", "# flow: vortex")):
         assert run(capsys, "dispersion", "vortex", "--k", "1", "-o", str(tmp_path / name))[0] == 0
         assert (tmp_path / name).read_text().startswith(start)
     assert run(capsys, "dispersion", "vortex", "--k", "1", "--json", "-o", str(tmp_path / "a.txt"))[0] == 0
@@ -420,6 +432,66 @@ def test_a_closed_pipe_is_quiet():
     os.close(writer)
     assert process.communicate()[1] == ""
     assert process.returncode == 141
+
+
+QUESTIONS = ["stability --help", "stability --version", "stability flows", "stability dispersion vortex --k 1",
+             "stability kmax dune --help", "stability spectrum vortex --k 1 --json", "asymptotics --help",
+             "asymptotics --version", "asymptotics flows", "asymptotics expand vortex",
+             "asymptotics expand dune --help"]
+
+
+def shell(question, streams):
+    """Run a command with the redirections `streams` of a shell."""
+    line = f"exec {sys.executable} -m {question} {streams}"
+    return subprocess.run(["bash", "-c", line], capture_output=True, text=True, check=False, timeout=60)
+
+
+@pytest.mark.parametrize("question", QUESTIONS)
+def test_closed_standard_streams(question):
+    """Without standard output one line says so, without standard error the exit status alone tells."""
+    program = question.split()[0]
+    done = shell(question, ">&-")
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert done.stderr.startswith(f"{program}: cannot write to standard output: it is closed")
+    whole = shell(question, "")
+    assert shell(question, "2>&-").stdout == shell(question, "2>&- <&-").stdout == whole.stdout != ""
+    done = shell(question, ">&- 2>&- <&-")
+    assert (done.returncode, done.stdout, done.stderr) == (2, "", "")
+
+
+@pytest.mark.parametrize("question", ["stability dispersion vortex --k 0", "asymptotics expand dune --Re 0",
+                                      "asymptotics check dune /nowhere"])
+@pytest.mark.parametrize("streams", ["2>&-", ">&- 2>&-", "<&- >&- 2>&-"])
+def test_bad_input_without_standard_error_is_an_exit_status(question, streams):
+    done = shell(question, streams)
+    assert (done.returncode, done.stdout, done.stderr) == (2, "", "")
+
+
+def test_files_are_written_without_standard_streams(tmp_path):
+    """And none of them gets what is meant for a stream."""
+    for number, streams in enumerate(("", ">&-", "2>&-", "<&- >&- 2>&-")):
+        target = tmp_path / f"{number}.csv"
+        command = "stability dispersion vortex --Fr2 5 --k 0.1,1"  # has a note
+        done = shell(f"{command} -o {target}", streams)
+        assert (done.returncode, done.stdout) == (0, "")
+        assert target.read_text() == (tmp_path / "0.csv").read_text()
+
+
+@pytest.mark.skipif(not os.path.exists(FULL), reason="needs /dev/full")
+@pytest.mark.parametrize(("question", "status"), [("stability dispersion vortex --Fr2 5 --k 0.1,1", 0),
+                                                  ("stability dispersion vortex --k 0", 2),
+                                                  ("asymptotics expand dune --Re 0", 2)])
+def test_what_standard_error_cannot_take_changes_nothing(question, status):
+    done, usual = shell(question, f"2>{FULL}"), shell(question, "")
+    assert usual.stderr
+    assert (done.returncode, done.stdout) == (usual.returncode, usual.stdout)
+    assert done.returncode == status
+
+
+def test_a_closed_standard_input_is_one_line():
+    done = shell("asymptotics check dune", "<&-")
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    assert done.stderr.startswith("asymptotics: cannot read standard input: it is closed")
 
 
 @pytest.mark.skipif(not os.path.exists(FULL), reason="needs /dev/full")

@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 from stability import ParameterError, dispersion, flows, k_max, maps
 from stability.cli import main
 from stability.errors import WorkersLost
-from stability.journal import Journal
+from stability.journal import Journal, _line
 from stability.mapplots import branch_changes
 from stability.maps import Request, compute, parameter_map
 from stability.neutral import critical
@@ -328,6 +328,118 @@ def test_a_journal_torn_anywhere_goes_on_from_its_last_whole_line(tmp_path):
         assert path.read_bytes() == whole
 
 
+FILM = {"Re": [1.0, 2.0, 3.0, 5.0, 8.0, 13.0]}
+FILM_COMMAND = ["map", "film", "--over", "Re=1,2,3,5,8,13", "--k", "0.1,0.2", "--workers", "1", "-o"]
+
+
+@pytest.fixture(scope="module")
+def film(tmp_path_factory):
+    """The file of a map, the lines of its journal, and a line of the journal of another map."""
+    folder = tmp_path_factory.mktemp("film")
+    assert main([*FILM_COMMAND, str(folder / "whole.csv")]) == 0
+    for name, flow in (("ours", flows.Film()), ("theirs", flows.Film(We=1.0))):
+        parameter_map(flow, FILM, k=[0.1, 0.2], journal=folder / name)
+    lines, others = ((folder / name).read_bytes().splitlines(keepends=True) for name in ("ours", "theirs"))
+    return (folder / "whole.csv").read_bytes(), lines, others[2]
+
+
+def flip(line, rng):
+    """Another byte somewhere, not the newline."""
+    changed = bytearray(line)
+    changed[rng.integers(len(line) - 1)] ^= 1 << rng.integers(7)
+    return bytes(changed)
+
+
+def another_digit(line, rng):
+    """One digit of the numbers is another one."""
+    places = [place for place in range(30, len(line)) if line[place:place + 1].isdigit()]
+    place = places[rng.integers(len(places))]
+    return line[:place] + str((int(line[place:place + 1]) + rng.integers(1, 10)) % 10).encode() + line[place + 1:]
+
+
+def shortened(line, rng):
+    """The first row lacks its last value."""
+    head, _, rest = line.partition(b', "resolved"]')
+    return head + b"]" + rest
+
+
+DAMAGE = {
+    "cut": lambda line, rng, other: line[: rng.integers(1, len(line) - 1)] + b"\n",
+    "cut with its end": lambda line, rng, other: line[: rng.integers(1, len(line) - 1)],
+    "flipped": lambda line, rng, other: flip(line, rng),
+    "doubled": lambda line, rng, other: line + line,
+    "foreign": lambda line, rng, other: line + b"my own notes\n",
+    "of another map": lambda line, rng, other: other,
+    "shortened": lambda line, rng, other: shortened(line, rng),
+    "a number": lambda line, rng, other: b"5\n",
+    "another digit": lambda line, rng, other: another_digit(line, rng),
+    "empty": lambda line, rng, other: b"\n" + line,
+}
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("kind", DAMAGE)
+def test_a_damaged_line_is_computed_again_and_that_is_said(tmp_path, capsys, film, kind, seed):
+    whole, lines, other = film
+    rng = np.random.default_rng([seed, *kind.encode()])
+    place = rng.integers(1, len(lines) - 1)  # the last one, without its end, would be taken for one torn by a kill
+    target, partial = tmp_path / "x.csv", tmp_path / "x.csv.partial"
+    partial.write_bytes(b"".join(DAMAGE[kind](line, rng, other) if index == place else line
+                                 for index, line in enumerate(lines)))
+    status, out, err = run(capsys, *FILM_COMMAND, str(target))
+    assert (status, out) == (0, "")
+    assert err == (f"stability: damaged lines of {str(partial)!r} left out: 1; the points that no other line holds "
+                   "were computed again\n")
+    assert target.read_bytes() == whole
+    assert [path.name for path in tmp_path.iterdir()] == ["x.csv"]
+
+
+@pytest.mark.parametrize("kind", sorted(DAMAGE.keys() - {"doubled", "foreign", "shortened"}))  # those leave it as it is
+def test_a_damaged_first_line_is_named_before_any_work(tmp_path, capsys, monkeypatch, film, kind):
+    _, (header, *lines), other = film
+    target, partial = tmp_path / "x.csv", tmp_path / "x.csv.partial"
+    damaged = b"".join([DAMAGE[kind](header, np.random.default_rng(1), other), *lines])
+    partial.write_bytes(damaged)
+    monkeypatch.setattr(maps, "compute", None)
+    status, out, err = run(capsys, *FILM_COMMAND, str(target))
+    assert (status, out) == (2, "")
+    assert err == (f"stability: {str(partial)!r} is not the journal of a map, or its first line is damaged: give "
+                   "another file, or delete it to compute the map anew\n")
+    assert partial.read_bytes() == damaged
+
+
+def test_a_map_says_how_many_lines_were_damaged(tmp_path, film):
+    _, lines, other = film
+    (tmp_path / "j").write_bytes(b"".join([lines[0], b"5\n", other, *lines[1:-1], lines[-1][:-9]]))
+    found = parameter_map(flows.Film(), FILM, k=[0.1, 0.2], journal=tmp_path / "j")
+    assert found.damaged == 2
+    assert found == parameter_map(flows.Film(), FILM, k=[0.1, 0.2])
+    assert parameter_map(flows.Film(), FILM, k=[0.1, 0.2]).damaged == 0
+
+
+@pytest.mark.parametrize("content", [5, [], [0], ["0", []], [0, 5], [-1, [[1.0, 2.0]]], [2, [[1.0, 2.0]]], [0, [[1.0]]],
+                                     [0, [[1.0, 2.0]] * 2], [0, [1.0]]], ids=str)
+def test_a_line_must_have_the_shape_of_its_piece(tmp_path, content):
+    """Even where its checksum is right."""
+    path, shapes = tmp_path / "j", [(1, 2), (1, 2)]
+    with Journal(path, {"flow": "dune"}, shapes) as journal:
+        text = json.dumps(content).encode()
+        journal._append(_line(journal._request + text, text))
+        journal.add(1, [[3.0, 4.0]])
+    with Journal(path, {"flow": "dune"}, shapes) as journal:
+        assert (journal.done, journal.damaged) == ({1: [[3.0, 4.0]]}, 1)
+
+
+def test_a_journal_without_checksums_is_refused(tmp_path, capsys):
+    target, partial = tmp_path / "x.csv", tmp_path / "x.csv.partial"
+    request = Request(flows.Film(), FILM, "growth_rate", k=[0.1, 0.2])
+    partial.write_text(json.dumps(request.description()) + "\n[0, [[1, 2, 3, 4, 5], [1, 2, 3, 4, 5]]]\n")
+    status, _, err = run(capsys, *FILM_COMMAND, str(target))
+    assert status == 2
+    assert err == (f"stability: {str(partial)!r} keeps a map without checksums, of an earlier version: give another "
+                   "file, or delete it to compute the map anew\n")
+
+
 def test_two_runs_do_not_share_a_journal(tmp_path):
     request = Request(flows.Dune(), {"Re": [1.0]}, "k_max").description()
     with Journal(tmp_path / "j", request), pytest.raises(ParameterError, match="in use"):
@@ -536,7 +648,7 @@ def test_bad_arguments_are_refused_before_any_file_is_touched(tmp_path, argument
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("journal", [5, b"kept"])
+@pytest.mark.parametrize("journal", [5, b"kept", "", "a\0b"])
 def test_a_journal_is_the_name_of_a_file(journal):
     with pytest.raises(ParameterError, match=r"^journal must be the name of a file \(got "):
         parameter_map(BED, RE, journal=journal)

@@ -1,6 +1,7 @@
 """What results can do: print themselves, write themselves as the command line does, draw themselves."""
 
 import json
+import re
 import subprocess
 import sys
 from copy import deepcopy
@@ -91,6 +92,29 @@ def test_files_are_those_of_the_command_line(tmp_path, capsys, record, name, for
     main([*COMMANDS[name].split(), f"--{form}", "--quiet"])
     assert target.read_text(encoding="utf-8") == capsys.readouterr().out
     assert list(tmp_path.iterdir()) == [target]
+
+
+class BytesPath:
+    def __fspath__(self):
+        return b"x"
+
+
+@pytest.mark.parametrize("path", [None, b"x.csv", 5, ["x"], "", "a\0b", "\ud800", BytesPath(), 1.5, True], ids=repr)
+@pytest.mark.parametrize("method", ["to_csv", "to_json", "to_netcdf"])
+def test_what_is_no_name_of_a_file_is_refused(tmp_path, monkeypatch, record, method, path):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ParameterError, match=rf"^{method}: path must be the name of a file \(got ") as refusal:
+        getattr(record("dispersion"), method)(path)
+    assert str(refusal.value).endswith(f"(got {path!r})")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("method", ["to_csv", "to_json", "to_netcdf"])
+def test_a_file_that_cannot_be_written_is_named(tmp_path, record, method):
+    for path, why in ((tmp_path, "it is a directory"), (tmp_path / "x" / "y", "No such file or directory"),
+                      (tmp_path / ("x" * 300), "File name too long")):
+        with pytest.raises(ParameterError, match=re.escape(f"{method}: cannot write {str(path)!r}: {why}")):
+            getattr(record("dispersion"), method)(path)
 
 
 @pytest.mark.parametrize("name", RECORDS)

@@ -8,7 +8,7 @@ and nothing else needs to know about it.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from pkgutil import iter_modules
 from typing import Any
@@ -95,7 +95,7 @@ def expand(flow_name: str, regime: str | None = None, order: Any = None, **value
     chosen = regime_for(flow, regime, exact)
     limit = flow.REGIMES[chosen]
     beforehand = {name: exact[name] for name in limit.numbers if name in exact}
-    expansion = limit.expand(_power(order, chosen, limit), **beforehand)
+    expansion = replace(limit.expand(_power(order, chosen, limit), **beforehand), step=limit.step)
     return expansion.with_parameters(**{name: value for name, value in exact.items() if name in limit.parameters})
 
 

@@ -2,7 +2,6 @@
 
 import argparse
 import os
-import sys
 from dataclasses import fields, replace
 from difflib import get_close_matches
 from pathlib import Path
@@ -14,11 +13,19 @@ from ..output import check_writable, render, terminal_width, whole_file, write
 from ..solver import DEGREES, TOLERANCE, check_accuracy
 from ..specs import parse_spec
 from ..status import INTERRUPTED, is_settled
+from ..streams import output_closed, say
 from .progress import Bar
 
 SPEC = "a number, a list a,b,c, or a range a:b:n (log-spaced) or a:b:n:lin"
 INTERRUPTED_STATUS = 130  # of the command
 FORMS = {".csv": "csv", ".json": "json", ".nc": "netcdf"}  # that the ending of a file stands for
+_FOREIGN = {  # endings of forms that we do not write: a table under such a name would mislead
+    ".xls", ".xlsx", ".ods", ".tsv", ".h5", ".hdf", ".hdf5", ".cdf", ".nc4", ".parquet", ".feather", ".arrow", ".orc",
+    ".avro", ".npy", ".npz", ".mat", ".pkl", ".pickle", ".zarr", ".db", ".sqlite", ".sqlite3", ".jsonl", ".ndjson",
+    ".xml", ".yaml", ".yml", ".toml", ".htm", ".html", ".md", ".tex", ".doc", ".docx", ".dta", ".sav", ".rds",
+    ".fits", ".vtk", ".vtu", ".png", ".pdf", ".svg", ".jpg", ".jpeg", ".gif", ".eps", ".ps", ".tif", ".tiff", ".webp",
+    ".zip", ".gz", ".bz2", ".xz", ".zst", ".tar",
+}
 _PLOTS = (".png", ".pdf", ".svg")
 _NUMBER = "V"  # metavar of a numeric parameter of a flow
 _JOIN = "join values with commas"
@@ -162,23 +169,23 @@ def report(arguments, compute):
     failed = [row for row in rows if not is_settled(row["status"]) and row["status"] != INTERRUPTED]
     if not arguments.quiet:
         for note in header.get("notes", ()):
-            print(f"stability: {note}", file=sys.stderr)
+            say(f"stability: {note}")
         if failed:
-            print(f"stability: {len(failed)} of {len(rows)} rows are not resolved: see status", file=sys.stderr)
+            say(f"stability: {len(failed)} of {len(rows)} rows are not resolved: see status")
         if missing:
-            print(f"stability: interrupted: {len(missing)} of {len(rows)} rows are not computed", file=sys.stderr)
+            say(f"stability: interrupted: {len(missing)} of {len(rows)} rows are not computed")
     if form == "netcdf":
         from ..netcdf import encode  # scipy.io is slow to import
 
         content = encode(result)
     else:
-        content = render(form, header, rows, None if arguments.output else terminal_width()).encode()
+        content = render(form, header, rows, terminal_width() if arguments.output is None else None).encode()
     try:
         _deliver(arguments.output, content)
     except ParameterError:  # the results then go where they can be read, as text
         write(render("csv", header, rows) if form == "netcdf" else content.decode(), None)
         raise
-    if arguments.plot:
+    if arguments.plot is not None:
         from ..plots import draw  # matplotlib takes longer to import than most results to compute
 
         with whole_file(arguments.plot, "--plot") as temporary:
@@ -188,20 +195,25 @@ def report(arguments, compute):
 
 def check_files(arguments):
     """Before the work, not after it: can its results be written? Return in which form."""
-    if arguments.output:
+    if arguments.output is not None:
         check_writable(arguments.output, "-o")
-    if arguments.plot:
+    elif output_closed():
+        raise ParameterError("cannot write to standard output: it is closed; write to a file with -o FILE")
+    if arguments.plot is not None:
         if not arguments.plot.endswith(_PLOTS):
             raise ParameterError(f"--plot: the file must end in {', '.join(_PLOTS)} (got {arguments.plot!r})")
         check_writable(arguments.plot, "--plot")
-        if arguments.output and os.path.realpath(arguments.output) == os.path.realpath(arguments.plot):
+        if arguments.output is not None and os.path.realpath(arguments.output) == os.path.realpath(arguments.plot):
             raise ParameterError(f"--plot: {arguments.plot!r} is the file of -o too; give each its own")
     return form_of(arguments)
 
 
 def form_of(arguments):
     """The form asked for, or the one that the ending of the file stands for."""
-    ending = Path(arguments.output or "").suffix
+    ending = Path(arguments.output or "").suffix.lower()
+    if ending in _FOREIGN:
+        raise ParameterError(f"-o: {ending} cannot be written; {', '.join(FORMS)} are known, .txt and no ending give a "
+                             f"table (got {arguments.output!r})")
     form = FORMS.get(ending, arguments.form)
     if arguments.form not in ("table", form):
         raise ParameterError(f"-o: --{arguments.form} contradicts the ending of {arguments.output!r}; leave it out, "

@@ -1,11 +1,11 @@
 """stability map: a quantity over a grid of one to three parameters, on all cores, resumed where it was stopped."""
 
-import sys
 from pathlib import Path
 
 from ..checks import check_integer
 from ..errors import ParameterError
 from ..specs import parse_spec
+from ..streams import say
 from .common import (
     FORMS,
     INTERRUPTED_STATUS,
@@ -52,11 +52,15 @@ def _run(arguments):
     bar = Bar(arguments.quiet)
     try:
         found = carry_out(request, workers=workers, journal=journal, report=bar)
+        bar.clear()
+        if found.damaged and not arguments.quiet:
+            say(f"stability: damaged lines of {str(journal)!r} left out: {found.damaged}; the points that no other "
+                "line holds were computed again")
         status = report(arguments, lambda: found)
     except KeyboardInterrupt:
         bar.clear()
-        print(f"stability: interrupted: {bar.done} of {request.size} points are kept in {str(journal)!r}; "
-              "the same command resumes", file=sys.stderr)
+        say(f"stability: interrupted: {bar.done} of {request.size} points are kept in {str(journal)!r}; "
+            "the same command resumes")
         return INTERRUPTED_STATUS
     finally:
         bar.clear()

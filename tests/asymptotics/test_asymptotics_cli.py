@@ -8,13 +8,17 @@ import sys
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 import sympy as sp
 
 from asymptotics import __version__ as asymptotics_version
-from asymptotics import cli, expand, flows
+from asymptotics import assert_order, cli, expand, flows
+from asymptotics.limits import OrderMismatch, TooFewPoints
 from stability import __version__ as stability_version
+from stability import dispersion
 from stability.cli import main as stability
+from stability.flows import Dune, Film, RollWave, TwoLayerCouette, Vortex
 
 ROOT = Path(__file__).parents[2]
 A = ["expand", "dune", "--regime", "shallow", "--shields", "1.5", "--depth", "10", "--mu1", "0.4", "--b", "1"]
@@ -186,6 +190,161 @@ def two_rows(monkeypatch):
     text = "# shields: 2\n# mu1: 0.4\n# b: 1\n# Re: 1\nk,growth_rate,phase_speed\n1e-3,2,3\n1e-2,2,3\n"
     monkeypatch.setattr(sys, "stdin", io.StringIO(text))
     return ["check", "dune"]
+
+
+LINES = {"film": ["film", "--k", "1e-3:1e-1:9", "--csv"], "vortex": ["vortex", "--k", "1e-2:1:9", "--csv"]}
+
+
+def numerics(capsys, flow):
+    assert stability(["dispersion", *LINES[flow]]) == 0
+    return capsys.readouterr().out
+
+
+def checked(capsys, monkeypatch, text, *arguments):
+    monkeypatch.setattr(sys, "stdin", io.StringIO(text))
+    return run(capsys, "check", *arguments)
+
+
+def reform(text, row):
+    """Numerics with their rows changed: `row(number, cells)` gives cells."""
+    comments = [line for line in text.splitlines() if line.startswith("#")]
+    header, *rows = [line.split(",") for line in text.splitlines() if not line.startswith("#")]
+    lines = [header, *(row(number, cells) for number, cells in enumerate(rows))]
+    return "\n".join([*comments, *(",".join(cells) for cells in lines)]) + "\n"
+
+
+@pytest.mark.parametrize("change", [
+    lambda text: "\ufeff" + text, lambda text: text.replace("\n", "\r\n"), lambda text: text.replace(",", ", "),
+    lambda text: text.replace(",", " ,\t "), lambda text: text.replace("\n", "\n\n"),
+], ids=["byte-order mark", "CRLF", "spaces", "tabs", "empty lines"])
+def test_numerics_written_by_other_programs(capsys, monkeypatch, tmp_path, change):
+    text = numerics(capsys, "vortex")
+    usual = checked(capsys, monkeypatch, text, "vortex")
+    assert checked(capsys, monkeypatch, change(text), "vortex") == usual
+    (tmp_path / "x.csv").write_bytes(change(text).encode())
+    assert run(capsys, "check", "vortex", str(tmp_path / "x.csv")) == usual
+    assert usual[0] == 0
+
+
+@pytest.mark.parametrize("text", ["", "\ufeff", "\r\n", "# flow: dune\n"])
+def test_an_empty_file_is_refused(capsys, monkeypatch, text):
+    monkeypatch.setattr(sys, "stdin", io.StringIO(text))
+    assert "is empty: it has no column k, growth_rate" in refused(capsys, "check", "dune")
+
+
+def test_rows_that_are_not_used_are_counted(capsys, monkeypatch):
+    """Not resolved, or not a number: 2 and 1 of 9."""
+    def spoil(number, cells):
+        if number in (3, 4):
+            return [cells[0], "", "", "", "", "lost: no mode"]
+        return [cells[0], "nan", *cells[2:]] if number == 5 else cells
+
+    text = numerics(capsys, "film")
+    k = [line.split(",")[0] for line in text.splitlines() if line[0].isdigit()]
+    status, out, err = checked(capsys, monkeypatch, reform(text, spoil), "film", "--order", "2")
+    assert status == 0
+    assert err == (f"asymptotics: 2 of 9 rows left out: not resolved, first at k = {k[3]}\n"
+                   f"asymptotics: 1 of 7 points left out: not a number, first at k = {float(k[5]):g}\n")
+    assert "6 points" in out.splitlines()[-1]
+    outgrown = reform(text, lambda number, cells: [*cells[:-1], "resolved; outgrown"])
+    assert checked(capsys, monkeypatch, outgrown, "film", "--order", "2")[2] == ""
+
+
+def test_growth_rates_alone_are_judged_as_real_part(capsys, monkeypatch):
+    text = numerics(capsys, "film")
+    alone = reform(text, lambda number, cells: [*cells[:2], cells[3]]).replace(
+        "k,growth_rate,phase_speed,error,degree,status", "k,growth_rate,error")
+    status, out, _ = checked(capsys, monkeypatch, alone, "film", "--order", "2")
+    assert status == 0
+    assert "agrees with the expected 4.0000" in out.splitlines()[-1]
+    assert (status, out) == checked(capsys, monkeypatch, text, "film", "--order", "2", "--part", "real")[:2]
+    wrong = reform(alone, lambda number, cells: [cells[0], repr(float(cells[1]) * 1.005), *cells[2:]])
+    status, out, err = checked(capsys, monkeypatch, wrong, "film", "--order", "2")
+    assert status == 3
+    assert "the coefficient of k^2 differs by" in err
+    assert "column phase_speed, which --part imag needs" in _refusal(capsys, monkeypatch, alone, "--part", "imag")
+
+
+def _refusal(capsys, monkeypatch, text, *arguments):
+    monkeypatch.setattr(sys, "stdin", io.StringIO(text))
+    return refused(capsys, "check", "film", *arguments)
+
+
+def test_a_wrong_growth_rate_does_not_hide_behind_the_phase(capsys, monkeypatch):
+    assert stability(["dispersion", "film", "--slope-deg", "45", "--k", "0.01:0.3:20", "--csv"]) == 0
+    text = capsys.readouterr().out
+    wrong = reform(text, lambda number, cells: [
+        cells[0], repr(float(cells[1]) + 0.005 * 14 / 3 * float(cells[0]) ** 2), *cells[2:]])
+    for numbers, status in ((text, 0), (wrong, 3)):
+        found, out, err = checked(capsys, monkeypatch, numbers, "film", "--order", "2")
+        assert found == status, out
+    assert err.startswith("asymptotics: observed order 4.1679 of the real part differs from the expected 4.0000: the "
+                          "coefficient of k^2 differs by 0.02")
+    assert out.splitlines()[0] == "# " + err.removeprefix("asymptotics: ").strip()
+    assert out.splitlines()[1].split() == ["k", "numeric", "series", "error", "slope"]
+    assert len(out.splitlines()) == 2 + 20
+
+
+# -- the same verdict, whoever asks -------------------------------------------------------------------------
+
+SAMPLES = {
+    "film": ("film", None, {"Re": 2.0, "slope_deg": 45.0, "We": 0.5}, 0.1),
+    "rollwave": ("rollwave", None, {"slope_deg": 28.0, "Fr2": 4.0, "mu1": 0.38, "mu2": 0.64}, 0.03),
+    "two_layer_couette": ("two_layer_couette", None, {
+        "viscosity_ratio": 2.0, "depth_ratio": 0.7, "density_ratio": 1.5, "Re": 0.2, "gravity": 1.0,
+        "tension": 1.0}, 0.3),
+    "vortex": ("vortex", None, {"slope_deg": 30.0, "Fr2": 0.1}, 0.5),
+    "shallow": ("dune", "shallow", {"shields": 1.5, "mu1": 0.4, "b": 1.0, "Re": 1.0, "depth": 10.0}, 1e-4),
+    "boundary-layer": ("dune", "boundary-layer", {"shields": 1.5, "mu1": 0.4, "b": 1.0, "Re": 1.0}, 1e-6),
+}
+KINDS = {"film": Film, "rollwave": RollWave, "two_layer_couette": TwoLayerCouette, "vortex": Vortex, "dune": Dune}
+
+
+def perturbed(sample, rng):
+    """Numerics of a flow, some of them wrong in a coefficient, noisy, unresolved or beyond the series."""
+    flow, regime, values, highest = SAMPLES[sample]
+    k = np.geomspace(0.01, 1, int(rng.integers(4, 14))) * highest * 10 ** rng.uniform(-0.3, 1.0)
+    relation = dispersion(KINDS[flow](**values), k)
+    law = expand(flow, regime, **values)
+    sigma, error = relation.sigma.copy(), relation.error.copy()
+    if rng.random() < 0.6:
+        power, coefficient = list(law.values().items())[rng.integers(len(law.terms))]
+        sigma += 10 ** rng.uniform(-4, -1) * rng.choice([1, 1j, coefficient]) * k ** float(power)
+    if rng.random() < 0.3:
+        error += 1e-6 * abs(sigma)
+        sigma += 1e-6 * abs(sigma) * (rng.uniform(-1, 1, len(k)) + 1j * rng.uniform(-1, 1, len(k))) / 2
+    if rng.random() < 0.2:
+        sigma[rng.integers(len(k))] = np.nan
+    return law, k, sigma, error
+
+
+def asserted(*arguments, **options):
+    """What `assert_order` says, as an exit status and a line."""
+    try:
+        return 0, assert_order(*arguments, **options).verdict
+    except OrderMismatch as mismatch:
+        return 3, mismatch.comparison.verdict
+    except TooFewPoints as refusal:
+        return 2, str(refusal)
+
+
+@pytest.mark.parametrize("sample", SAMPLES)
+def test_the_command_and_the_assertion_say_the_same(capsys, monkeypatch, sample):
+    flow, regime, values, _ = SAMPLES[sample]
+    rng, found = np.random.default_rng(list(sample.encode())), []
+    for _ in range(35):
+        law, k, sigma, error = perturbed(sample, rng)
+        part, tolerance = str(rng.choice(["both", "both", "real", "imag"])), float(rng.choice([0.05, 0.1]))
+        growth, speed = sigma.real, -sigma.imag / k
+        rows = zip(k.tolist(), growth.tolist(), speed.tolist(), error.tolist(), strict=True)
+        text = "".join([*(f"# {name}: {value}\n" for name, value in values.items()),
+                        "k,growth_rate,phase_speed,error\n", *(",".join(map(repr, row)) + "\n" for row in rows)])
+        options = [*(["--regime", regime] if regime else []), "--part", part, "--tolerance", str(tolerance)]
+        status, out, err = checked(capsys, monkeypatch, text, flow, *options)
+        said = out.splitlines()[-1].removeprefix("# ") if status == 0 else err.splitlines()[-1].partition(": ")[2]
+        assert (status, said) == asserted(growth - 1j * k * speed, law, k, error=error, part=part, tolerance=tolerance)
+        found.append(status)
+    assert {0, 3} <= set(found)
 
 
 # -- as a program -------------------------------------------------------------------------------------------
