@@ -1,10 +1,6 @@
 """What can go wrong, by name. Messages say what was asked, what was found and what to try."""
 
 
-REMEDY = ("give a profile of finite real numbers without kinks, steps or noise, or divide the layer where it has them "
-          "(a thin feature in a very thick layer counts as a kink)")
-
-
 class StabilityError(Exception):
     """Base of all errors of this package."""
 
@@ -19,17 +15,18 @@ class NotSmooth(ParameterError):
     `where` names flow and layer, `complaint` the coefficient, `height` is the z where it is rough, or None.
     """
 
-    def __init__(self, where, complaint, height=None):
-        super().__init__(where, complaint, height)
-        self.where, self.complaint, self.height = where, complaint, height
+    def __init__(self, where, complaint, height, remedy):
+        super().__init__(where, complaint, height, remedy)
+        self.where, self.complaint, self.height, self.remedy = where, complaint, height, remedy
 
     def of(self, flow, bottom):
         """Return the same with the flow named, and the height measured from where z = 0 in it."""
-        return NotSmooth(f"{flow}: {self.where}", self.complaint, self.height and self.height + bottom)
+        height = None if self.height is None else self.height + bottom
+        return NotSmooth(f"{flow}: {self.where}", self.complaint, height, self.remedy)
 
     def __str__(self):
         place = "" if self.height is None else f" near z = {self.height:.4g}"
-        return f"{self.where}: {self.complaint}{place}: {REMEDY}"
+        return f"{self.where}: {self.complaint}{place}: {self.remedy}"
 
 
 class ConditionCount(StabilityError):

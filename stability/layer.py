@@ -35,6 +35,10 @@ from .smooth import Fit, Rough, fit
 
 FIELDS = ("v", "w", "t", "n")
 
+_NUMBERS = "the values of a profile must be finite real numbers, one for all points or one for each"
+_SMOOTHEN = ("take a smooth profile, without kink, step or noise, or divide the layer there (a feature thinner than "
+             "1/1000 of its layer counts as a kink)")
+
 
 @dataclass(frozen=True)
 class Profile:
@@ -79,7 +83,11 @@ class Layer:
 
     @cached_property
     def _height(self) -> np.ndarray:
-        return C.chebint(self.resolved(lambda base, s: [base.dz]).series[0], lbnd=-1) / 2
+        try:
+            slope = fit(lambda s: np.broadcast_to(np.asarray(self.profile(s).dz, dtype=float), (1, len(s))))
+        except Rough as rough:
+            raise NotSmooth(f"layer {self.name}", f"dz is not smooth near s = {rough.s:.4g}", None, _SMOOTHEN) from None
+        return C.chebint(slope.series[0], lbnd=-1) / 2
 
     def resolved(self, coefficients: Callable[..., Any], together: bool = False) -> Fit:
         """Return the series of `coefficients(base, s)`, a list of arrays (points,) or numbers made of the profile at s.
@@ -98,7 +106,8 @@ class Layer:
         try:
             return fit(sample, together)
         except Rough as rough:
-            raise self._refusal(*self._culprit(rough.s)) from None
+            name, s = self._culprit(rough.s)
+            raise self._refusal(f"{name} not smooth", s, _SMOOTHEN) from None
 
     def _checked(self, s):
         """The profile at the points s, all of whose values are numbers or have the shape of s, real and finite."""
@@ -117,8 +126,8 @@ class Layer:
     def _check(self, name, values, s):
         """Raise NotSmooth where one of the values (functions, points) or (functions,) is not finite."""
         if not np.isfinite(values).all():
-            where = np.argwhere(~np.isfinite(values))[0]
-            raise self._refusal(f"{name} is {values[tuple(where)]}", s[where[1]] if len(where) > 1 else None)
+            where = tuple(np.argwhere(~np.isfinite(values))[0])
+            raise self._refusal(f"{name} is {values[where]}", s[where[1]] if len(where) > 1 else None)
 
     def _culprit(self, s):
         """Which field of the profile does not end, in words, and where; of several that do not, the first."""
@@ -128,17 +137,17 @@ class Layer:
             try:
                 fit(lambda at, name=name: np.broadcast_to(getattr(self.profile(at), name), (1, len(at))))
             except Rough as rough:
-                return f"{name} is not smooth", rough.s
-        return "the coefficients of the equations are not smooth", s
+                return f"{name} is", rough.s
+        return "the coefficients of the equations are", s
 
-    def _refusal(self, complaint, s=None):
+    def _refusal(self, complaint, s=None, remedy=None):
         height = None
         if s is not None:
             try:
                 height = float(self.height(np.array(s)))
-            except (NotSmooth, TypeError):  # the map itself, or one that depends on a symbol
+            except (NotSmooth, TypeError, ValueError):  # the map itself is at fault, or depends on a symbol
                 complaint = f"{complaint} near s = {s:.4g}"
-        return NotSmooth(f"layer {self.name}", complaint, height)
+        return NotSmooth(f"layer {self.name}", complaint, height, remedy or _NUMBERS)
 
 
 _NAMES = tuple(field.name for field in fields(Profile))

@@ -99,9 +99,10 @@ def _kept(size, largest):
 
 def _left_out(values, chopped, largest, short):
     """What the series leave out at most, (functions,), and whether they meet the probes."""
-    count = chopped.shape[1]
-    stray = np.abs(values[:, count:] - chopped @ _probes(count)[1]).max(axis=1)
-    if short.all():
+    count, every = chopped.shape[1], short.all()
+    reach = _SHORT if every else count
+    stray = np.abs(values[:, count:] - chopped[:, :reach] @ _probes(reach)[1]).max(axis=1)
+    if every:
         return np.zeros(len(stray)), stray <= _ROUNDING * largest
     inside = np.abs(values[:, :count] - chebyshev.values(chopped)).max(axis=1)
     cut = np.where(short, 0.0, _SAFETY * np.maximum(inside, stray))

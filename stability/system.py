@@ -85,7 +85,7 @@ class System:
 
     def _terms(self, form):
         """Split every term of a condition into its one unknown, its monomial and its number as a series."""
-        return tuple((*self._split(names), _series(number)) for names, number in form.terms.items() if np.any(number))
+        return tuple((*self._split(names), _series(number)) for names, number in form.terms.items() if number)
 
     def _split(self, names):
         """The one unknown among the names of a product, and the monomial of the others."""
@@ -113,8 +113,7 @@ def _edge(layer, end):
 
 def _series(number):
     """A number as a series of one term; real if it is real."""
-    value = np.atleast_1d(number)
-    return value if np.any(value.imag) else value.real
+    return np.array([number if number.imag else number.real])
 
 
 def _check_count(flow, layers, given):
