@@ -27,7 +27,7 @@ _ROUNDING = 64 * _EPS  # disagreement of a short series with the probes, relativ
 _STRAY = 8.0  # disagreement with the probes in units of that with the sample points
 _SAFETY = 2.0  # what is left out between the points over what is left out at them
 _LATTICE = 987, 1597  # Fibonacci numbers, the second a prime: probes spread evenly and never meet a sample point
-_PROBES = 32
+_PROBES = 96
 
 
 class Rough(Exception):
