@@ -96,7 +96,9 @@ class Layer:
         value of the profile is not a finite real number.
         """
         def sample(s):
-            given = coefficients(self._checked(s), s)
+            base = self._checked(s)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                given = coefficients(base, s)
             values = np.empty((len(given), len(s)), np.result_type(*given))
             for row, one in zip(values, given, strict=True):
                 row[:] = one

@@ -101,7 +101,8 @@ def _same(one, other):
     if isinstance(one, np.ndarray):
         return np.array_equal(one, other)
     if isinstance(one, Equation):
-        return one.name == other.name and one.extra == other.extra and _same(one.terms, other.terms)
+        alike = (one.name, one.extra, one.cuts) == (other.name, other.extra, other.cuts)
+        return alike and _same(one.terms, other.terms)
     if isinstance(one, tuple):
         return len(one) == len(other) and all(_same(a, b) for a, b in zip(one, other, strict=True))
     return one == other
