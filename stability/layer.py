@@ -37,7 +37,7 @@ FIELDS = ("v", "w", "t", "n")
 
 _NUMBERS = "the values of a profile must be finite real numbers, one for all points or one for each"
 _SMOOTHEN = ("take a smooth profile, without kink, step or noise, or divide the layer there (a feature thinner than "
-             "1/1000 of its layer counts as a kink)")
+             "1/500 of its layer counts as a kink)")
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ import numpy as np
 from . import chebyshev
 from .bordered import Bordered, Factors
 from .layer import FIELDS
-from .stack import Stack, square
+from .stack import Stack
 
 _LAST = 4  # rows of an equation whose left vector bounds that of the tail: the last two alone feel the truncation
 
@@ -113,14 +113,23 @@ class Pencil:
     def cut(self, weights, y, x):
         """Bound on what series left out change y^T (A - rate B) x, (points,); `weights` (parts, points) of the parts.
 
-        With a coefficient wrong by delta at most, the residual of an equation is wrong by delta |f| in the Chebyshev
-        weight, f the unknown, and its T-coefficients by sqrt(2) times that of the 2-norm of those of f.
+        The T-coefficients of a residual are integrals over the angle: y^T times those of g is the mean of Y g with
+        Y = y_0 + 2 (y_1 T_1 + y_2 T_2 + ...). With a coefficient of the unknown f wrong by delta at most, it is wrong
+        by delta times the mean of |Y f|.
         """
         total = np.zeros(x.shape[1])
         for part, unknown, rows, bound in self.cuts:
             series = chebyshev.basis(self.degree)[int(unknown.endswith("'"))] @ x[self.columns[unknown.rstrip("'")]]
-            total += np.sqrt(2) * bound * np.abs(weights[part]) * _size(y[rows]) * _size(series)
+            adjoint = 2 * y[rows]
+            adjoint[0] /= 2
+            total += bound * np.abs(weights[part]) * np.mean(self._sizes(adjoint) * self._sizes(series), axis=1)
         return total
+
+    def _sizes(self, series):
+        """Moduli of T-series (terms, points) at Chebyshev points, twice as many as there are terms."""
+        padded = np.zeros((series.shape[1], 2 * self.degree + 2), series.dtype)
+        padded[:, :len(series)] = series.T
+        return np.abs(chebyshev.values(padded))
 
     @cached_property
     def tail(self):
@@ -163,7 +172,3 @@ class Pencil:
         carries = part >= self.first_b
         np.add.at(full, (carries.astype(int), row, column), np.where(carries, -value, value))
         return full[0], full[1]
-
-
-def _size(vectors):
-    return np.sqrt(square(vectors).sum(axis=0))
