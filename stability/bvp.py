@@ -14,13 +14,11 @@ import numpy as np
 from numpy.polynomial import chebyshev as C
 from scipy.integrate import solve_bvp
 
-from . import chebyshev
 from .errors import ParameterError
-from .layer import FIELDS, residuals
+from .layer import FIELDS, residuals, resolved
 
 _NODES = 20_000
 _SHEAR_STRESS = 2  # index of t(0) among the edge values
-_SAMPLES = 96
 _INSIDE = np.array([0.2, 0.7])
 
 
@@ -40,7 +38,7 @@ class Problem:
         self.layers = flow.layers(self._names(0.0, ()))
         self.size = len(FIELDS) * len(self.layers)
         self.singular = np.zeros((self.size, self.size), complex)
-        self._remainders = {i: self._split(layer) for i, layer in enumerate(self.layers) if layer.singular}
+        self._remainders = {i: self._split(i) for i, layer in enumerate(self.layers) if layer.singular}
         self.conditions = self._conditions()
         self.real = not any(np.any(part.imag) for part in (*self.conditions, self.singular, self._evaluate(_INSIDE)))
         self._seen = {}
@@ -49,18 +47,23 @@ class Problem:
         return SimpleNamespace(k=self.k, rate=rate, **self.functions,
                                **dict(zip(self.flow.surfaces, surfaces, strict=False)))
 
-    def _regular(self, layer, s):
+    def _regular(self, index, s):
         """M0 and M1 of a layer at the points s, (2, 4, 4, points); their limits where an edge gives 0/0."""
+        layer = self.layers[index]
         with np.errstate(divide="ignore", invalid="ignore"):
-            matrices = self._layer(layer, s)
+            matrices = self._layer(layer, layer.profile(s), s)
         open_ = ~np.all(np.isfinite(matrices), axis=(0, 1, 2))
         if np.any(open_):
-            series = chebyshev.coefficients(self._layer(layer, chebyshev.points(_SAMPLES)).reshape(-1, _SAMPLES).T)
-            matrices[..., open_] = C.chebval(2 * s[open_] - 1, series).reshape(2, 4, 4, -1)
+            matrices[..., open_] = self._series(index, 0).at(s[open_]).reshape(2, 4, 4, -1)
         return matrices
 
-    def _layer(self, layer, s):
-        base = layer.profile(s)
+    def _series(self, index, power):
+        """Series of the entries of M0 and M1 of a layer times this power of s."""
+        layer = self.layers[index]
+        return resolved(self.flow, self.layers, index, together=True, coefficients=lambda base, s:
+                        (s**power * self._layer(layer, base, s)).reshape(-1, len(s)))
+
+    def _layer(self, layer, base, s):
         zero, unit = np.zeros(4), np.eye(4)
 
         def residual(rate, fields, slopes):
@@ -71,12 +74,14 @@ class Problem:
         constant, total = (-np.array([residual(rate, unit[j], zero) for j in range(4)]) for rate in (0.0, 1.0))
         return np.array([constant, total - constant]).swapaxes(1, 2) / leading[:, None]
 
-    def _split(self, layer):
+    def _split(self, index):
         """Series of a layer whose shear-rate equation is singular at s = 0, less S / s; S is stored."""
-        s = chebyshev.points(_SAMPLES)
-        series = chebyshev.coefficients((s * self._layer(layer, s)).reshape(-1, _SAMPLES).T)
+        layer, fit = self.layers[index], self._series(index, 1)
+        series = np.zeros((fit.length, len(fit.series)), complex)
+        for column, one in zip(series.T, fit.series, strict=True):
+            column[:len(one)] = one
         at_edge = C.chebval(-1.0, series)
-        start = len(FIELDS) * self.layers.index(layer)
+        start = len(FIELDS) * index
         block = slice(start, start + len(FIELDS))
         self.singular[block, block] = at_edge.reshape(2, 4, 4)[0]
         if layer.singular > 1 or np.max(np.abs(at_edge.reshape(2, 4, 4)[1])) > 1e-10:
@@ -90,12 +95,12 @@ class Problem:
 
     def _evaluate(self, s):
         matrices = np.zeros((2, self.size, self.size, len(s)), complex)
-        for i, layer in enumerate(self.layers):
+        for i in range(len(self.layers)):
             block = slice(4 * i, 4 * i + 4)
             if i in self._remainders:
                 matrices[:, block, block] = C.chebval(2 * s - 1, self._remainders[i]).reshape(2, 4, 4, -1)
             else:
-                matrices[:, block, block] = self._regular(layer, s)
+                matrices[:, block, block] = self._regular(i, s)
         return matrices
 
     def matrices(self, s):

@@ -10,7 +10,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.polynomial import chebyshev as C
 
-_CHOP = 8 * np.finfo(float).eps
+CHOP = 8 * np.finfo(float).eps  # of the largest coefficient of a series: less is taken for rounding
 
 
 def points(count):
@@ -33,28 +33,34 @@ def at(s, degree):
     return C.chebvander(2 * np.atleast_1d(s) - 1, degree) @ basis(degree)[0]
 
 
-def coefficients(samples):
-    """T-coefficients (count,) of the interpolant through samples at `points(count)`, chopped.
+def transform(samples):
+    """T-coefficients (..., count) of the interpolants through samples (..., count) at `points(count)`.
 
-    Coefficients below a few roundings of the largest are set to zero, so that a polynomial
-    keeps its degree and its product matrix its band.
+    By a fast transform of the samples and their mirror image: it rounds far less than a product with a matrix.
     """
-    series = _transform(len(samples)) @ samples
-    series[np.abs(series) < _CHOP * np.max(np.abs(series))] = 0
-    return series
+    if np.iscomplexobj(samples):  # apart, so that real functions have real series
+        return transform(samples.real) + 1j * transform(samples.imag)
+    count = samples.shape[-1]
+    mirrored = np.concatenate((samples[..., ::-1], samples), axis=-1)
+    return (np.fft.rfft(mirrored)[..., :count] * _twist(count)).real
 
 
-@lru_cache(maxsize=4)
-def _transform(count):
-    """Matrix (count, count) from samples at the first-kind points to T-coefficients.
+def values(series):
+    """Values (..., count) at `points(count)` of T-coefficients (..., count)."""
+    if np.iscomplexobj(series):
+        return values(series.real) + 1j * values(series.imag)
+    count = series.shape[-1]
+    waves = np.zeros((*series.shape[:-1], count + 1), complex)
+    waves[..., :count] = series / _twist(count)
+    return np.fft.irfft(waves)[..., count - 1:: -1]
 
-    T_m at the points is a cosine of a multiple of pi / (2 count), exact to rounding for every m, which
-    the three-term recurrence is not.
-    """
-    odd = 2 * np.arange(count)[::-1] + 1
-    matrix = np.cos(np.outer(np.arange(count), odd) % (4 * count) * (np.pi / (2 * count))) * (2 / count)
-    matrix[0] /= 2
-    return matrix
+
+@lru_cache(maxsize=8)
+def _twist(count):
+    """Factors (count,) that turn the waves of a mirrored sequence of 2 count samples into T-coefficients."""
+    factor = np.exp(-0.5j * np.pi * np.arange(count) / count) / count
+    factor[0] /= 2
+    return factor
 
 
 def entries(series, slopes, count, degree):

@@ -9,16 +9,15 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-from numpy.polynomial import chebyshev as C
 
 from . import chebyshev
 from .checks import as_number, shown
 from .errors import ParameterError
-from .layer import FIELDS
+from .layer import FIELDS, resolved
 from .mode import Mode
 from .solver import DEGREES, Solver
 
-_SAMPLES = 96  # points that carry the coefficients of the base flow, and the maximum of |u| on each layer
+_POINTS = 1537  # of a layer, among which |u| is largest
 _BISECTIONS = 60
 _ROUNDING = 1e-12  # of the thickness of the flow: heights this little outside lie on the edge
 _AT_REST = 1e-10  # amplitude / max |u| below which a surface does not take part in a mode
@@ -64,6 +63,7 @@ class Eigenfunction:
         columns = solver.pencil(mode.degree).columns
         self.k, self.degree, self.order, self.reflection = mode.k, mode.degree, flow.order, flow.reflection
         self.layers = flow.layers(SimpleNamespace(**{name: value[0] for name, value in solver.symbols(mode.k).items()}))
+        self._base = [resolved(flow, self.layers, index, _velocities) for index in range(len(self.layers))]
         thickness = [float(layer.height(np.array(1.0))) for layer in self.layers]
         self.edges = flow.bottom + np.concatenate(([0.0], np.cumsum(thickness)))
         self.high = self.edges[-1]
@@ -78,7 +78,7 @@ class Eigenfunction:
     def _reference(self, amplitude: complex) -> complex:
         """The amplitude, or the u of largest modulus where the amplitude is 0."""
         self._scale = 1.0
-        s = np.linspace(0, 1, 16 * _SAMPLES + 1)
+        s = np.linspace(0, 1, _POINTS)
         u = np.concatenate([self._at(index, s)[0] for index in range(len(self.layers))])
         largest = complex(u[np.argmax(np.abs(u))])
         return amplitude if abs(amplitude) > _AT_REST * abs(largest) else largest
@@ -120,12 +120,11 @@ class Eigenfunction:
     def _at(self, index: int, s: np.ndarray) -> np.ndarray:
         """u, w, t, n, p (5, points) at the points s of a layer."""
         v, w, t, n = (chebyshev.at(s, self.degree) @ self._series[index]).T
-        points = chebyshev.points(_SAMPLES)
-        base = self.layers[index].profile(points)
+        g, viscosity, stress = self._base[index].at(s)
         along = 1j * self.k**self.order
-        viscous = _values(base.eta * base.g, s) * (along * v)  # eta u: finite where eta is not
-        stresses = base.stress * np.array((along * t, n, -n - 2j * self.k * viscous))
-        velocities = _values(base.g, s) * (along * v), self.k ** (1 + self.order) * w
+        viscous = viscosity * (along * v)  # eta u: finite where eta is not
+        stresses = stress * np.array((along * t, n, -n - 2j * self.k * viscous))
+        velocities = g * (along * v), self.k ** (1 + self.order) * w
         return self._scale * np.array((*velocities, *stresses), dtype=complex)
 
 
@@ -139,7 +138,6 @@ def _heights(z: Any) -> np.ndarray:
     return np.array(numbers, dtype=float).reshape(array.shape)
 
 
-def _values(samples: Any, s: np.ndarray) -> np.ndarray:
-    """A coefficient given at the sample points (or a number), at the points s."""
-    full = np.broadcast_to(np.asarray(samples, dtype=float), _SAMPLES)
-    return C.chebval(2 * s - 1, chebyshev.coefficients(full))
+def _velocities(base, s):
+    """What turns scaled unknowns into velocities and viscous stresses."""
+    return base.g, base.eta * base.g, base.stress

@@ -17,7 +17,10 @@ from numpy.polynomial import chebyshev as C
 from numpy.polynomial import legendre as L
 
 from . import chebyshev
+from .layer import resolved
 from .solver import Solver
+
+_SPARE = 24  # Gauss nodes beyond the degree: 3 are enough for the flows of this package
 
 
 @dataclass(frozen=True)
@@ -38,12 +41,12 @@ def energy(solver, k, degree):
     flow, pencil = solver.flow, solver.pencil(degree)
     symbols = {name: value[0] for name, value in solver.symbols(k).items()}
     layers = flow.layers(SimpleNamespace(**symbols))
-    nodes, weights = _gauss(degree)
     stretch, width = k**flow.order, solver.width(k)
     state, adjoint = [], []
-    for layer in layers:
+    for index, layer in enumerate(layers):
         if layer.steady:
             continue
+        nodes, weights = _gauss(degree, resolved(flow, layers, index, _densities).length)
         base = layer.profile(nodes)
         root = np.sqrt(weights * np.abs(base.stress * base.rho * base.dz))
         values = chebyshev.at(nodes, degree)
@@ -79,9 +82,15 @@ def condition_numbers(modes):
     return np.array(found)
 
 
-def _gauss(degree):
-    """Nodes and weights on 0 <= s <= 1, enough for products of series with polynomials of the base flow."""
-    nodes, weights = L.leggauss(degree + 24)
+def _densities(base, s):
+    """What squares of velocities are multiplied by in the energy of a state and of its adjoint."""
+    density = base.rho * base.dz
+    return base.stress * density * base.g**2, base.stress * density, density / base.stress
+
+
+def _gauss(degree, length):
+    """Nodes and weights on 0 <= s <= 1, enough for squares of series times a density of this many terms."""
+    nodes, weights = L.leggauss(degree + max(_SPARE, length // 2 + 1))
     return (1 + nodes) / 2, weights / 2
 
 

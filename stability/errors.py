@@ -9,6 +9,26 @@ class ParameterError(StabilityError, ValueError):
     """A parameter lies outside its range."""
 
 
+class NotSmooth(ParameterError):
+    """A base flow has a kink, a step or noise, or a value that is not a finite real number.
+
+    `where` names flow and layer, `complaint` the coefficient, `height` is the z where it is rough, or None.
+    """
+
+    def __init__(self, where, complaint, height, remedy):
+        super().__init__(where, complaint, height, remedy)
+        self.where, self.complaint, self.height, self.remedy = where, complaint, height, remedy
+
+    def of(self, flow, bottom):
+        """Return the same with the flow named, and the height measured from where z = 0 in it."""
+        height = None if self.height is None else self.height + bottom
+        return NotSmooth(f"{flow}: {self.where}", self.complaint, height, self.remedy)
+
+    def __str__(self):
+        place = "" if self.height is None else f" near z = {self.height:.4g}"
+        return f"{self.where}: {self.complaint}{place}: {self.remedy}"
+
+
 class ConditionCount(StabilityError):
     """The conditions of a flow do not match the order of its layers."""
 

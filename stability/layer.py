@@ -22,17 +22,22 @@ Without convection (U = 0, alpha = 0) all coefficients are real.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev as C
 
-from . import chebyshev
+from .errors import NotSmooth
+from .forms import Form
+from .smooth import Fit, Rough, fit
 
 FIELDS = ("v", "w", "t", "n")
 
-_SAMPLES = 64  # points that carry the slope of the map
+_NUMBERS = "the values of a profile must be finite real numbers, one for all points or one for each"
+_SMOOTHEN = ("take a smooth profile, without kink, step or noise, or divide the layer there (a feature thinner than "
+             "1/500 of its layer counts as a kink)")
 
 
 @dataclass(frozen=True)
@@ -74,10 +79,98 @@ class Layer:
 
     def height(self, s: np.ndarray) -> np.ndarray:
         """Distance of the points 0 <= s <= 1 from the lower edge: the integral of dz/ds."""
-        points = chebyshev.points(_SAMPLES)
-        slope = np.broadcast_to(np.asarray(self.profile(points).dz, dtype=float), points.shape)
-        integral = C.chebint(chebyshev.coefficients(slope), lbnd=-1) / 2
-        return C.chebval(2 * s - 1, integral)
+        return C.chebval(2 * s - 1, self._height)
+
+    @cached_property
+    def _height(self) -> np.ndarray:
+        try:
+            slope = fit(lambda s: np.broadcast_to(np.asarray(self.profile(s).dz, dtype=float), (1, len(s))))
+        except Rough as rough:
+            raise NotSmooth(f"layer {self.name}", f"dz is not smooth near s = {rough.s:.4g}", None, _SMOOTHEN) from None
+        return C.chebint(slope.series[0], lbnd=-1) / 2
+
+    def resolved(self, coefficients: Callable[..., Any], together: bool = False) -> Fit:
+        """Return the series of `coefficients(base, s)`, a list of arrays (points,) or numbers made of the profile at s.
+
+        They are sampled until they have ended, as `smooth.fit` does. Raises NotSmooth where they do not, and where a
+        value of the profile is not a finite real number.
+        """
+        def sample(s):
+            base = self._checked(s)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                given = coefficients(base, s)
+            values = np.empty((len(given), len(s)), np.result_type(*given))
+            for row, one in zip(values, given, strict=True):
+                row[:] = one
+            self._check("a coefficient of the equations", values, s)
+            return values
+
+        try:
+            return fit(sample, together)
+        except Rough as rough:
+            name, s = self._culprit(rough.s)
+            raise self._refusal(f"{name} not smooth", s, _SMOOTHEN) from None
+
+    def _checked(self, s):
+        """The profile at the points s, all of whose values are numbers or have the shape of s, real and finite."""
+        base = self.profile(s)
+        for name in _NAMES:
+            value = getattr(base, name)
+            if type(value) is float and abs(value) < np.inf:  # most are
+                continue
+            for one in value.terms.values() if isinstance(value, Form) else (value,):
+                number = np.asarray(one)
+                if number.dtype.kind not in "fiub" or number.shape and number.shape != s.shape:
+                    raise self._refusal(_unfit(name, number, s))
+                self._check(name, number[None], s)
+        return base
+
+    def _check(self, name, values, s):
+        """Raise NotSmooth where one of the values (functions, points) or (functions,) is not finite."""
+        if not np.isfinite(values).all():
+            where = tuple(np.argwhere(~np.isfinite(values))[0])
+            raise self._refusal(f"{name} is {values[where]}", s[where[1]] if len(where) > 1 else None)
+
+    def _culprit(self, s):
+        """Which field of the profile does not end, in words, and where; of several that do not, the first."""
+        for name in _NAMES:
+            if isinstance(getattr(self.profile(np.array([s])), name), Form):
+                continue
+            try:
+                fit(lambda at, name=name: np.broadcast_to(getattr(self.profile(at), name), (1, len(at))))
+            except Rough as rough:
+                return f"{name} is", rough.s
+        return "the coefficients of the equations are", s
+
+    def _refusal(self, complaint, s=None, remedy=None):
+        height = None
+        if s is not None:
+            try:
+                height = float(self.height(np.array(s)))
+            except (NotSmooth, TypeError, ValueError):  # the map itself is at fault, or depends on a symbol
+                complaint = f"{complaint} near s = {s:.4g}"
+        return NotSmooth(f"layer {self.name}", complaint, height, remedy or _NUMBERS)
+
+
+_NAMES = tuple(field.name for field in fields(Profile))
+
+
+def _unfit(name, value, s):
+    """What is wrong with the type or the shape of a value of a profile."""
+    if value.dtype.kind == "c":
+        return f"{name} is complex"
+    if value.dtype.kind not in "fiub":
+        return f"{name} is no number"
+    return f"{name} has the shape {value.shape} at points of the shape {s.shape}"
+
+
+def resolved(flow, layers, index, coefficients, together=False):
+    """Return `Layer.resolved` of one of the layers of a flow; what it raises names the flow and a height in it."""
+    try:
+        return layers[index].resolved(coefficients, together)
+    except NotSmooth as reason:
+        bottom = flow.bottom + sum(float(layer.height(np.array(1.0))) for layer in layers[:index])
+        raise reason.of(flow.name, bottom) from None
 
 
 def residuals(base, k, rate, fields, slopes, order):

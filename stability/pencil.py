@@ -17,10 +17,10 @@ from functools import cached_property
 
 import numpy as np
 
+from . import chebyshev
 from .bordered import Bordered, Factors
 from .layer import FIELDS
 from .stack import Stack
-from .table import TAIL
 
 _LAST = 4  # rows of an equation whose left vector bounds that of the tail: the last two alone feel the truncation
 
@@ -46,16 +46,16 @@ class Pencil:
 
     The residual of the equations is (A - rate B) x. Attributes: `parts`, monomials; those from `first_b` on carry
     the rate and belong to -B; `stack` and `tail`, their `size` rows and the rows beyond; `columns` and `rows` map
-    unknowns and equations to index arrays; `last` (equations, 4) are the last rows of each equation; `real`
-    tells whether all matrices are real.
+    unknowns and equations to index arrays; `last` (equations, 4) are the last rows of each equation; `cuts` tell what
+    was left out of coefficients, none where that is rounding; `real` tells whether all matrices are real.
     """
 
     def __init__(self, table, degree):
-        self.degree, self.parts, self.first_b = degree, table.parts, table.first_b
+        self.degree, self.parts, self.first_b, self._tail = degree, table.parts, table.first_b, table.tail
         self._symbols = tuple(sorted({name for part in self.parts for name in part} - {"rate"}))
         self._powers = np.array([[part.count(name) for name in self._symbols] for part in self.parts])
         columns, rows = self._place(table)
-        reach = np.array([degree + equation.extra + TAIL for equation in table.system.equations]
+        reach = np.array([degree + equation.extra + table.tail for equation in table.system.equations]
                          + [1] * len(table.system.conditions))
         kept = (table.column <= degree) & (table.row < reach[table.equation])
         entries = (table.part[kept], rows[table.equation[kept], table.row[kept]],
@@ -64,6 +64,8 @@ class Pencil:
                                        (entries[1] < self.size, entries[1] >= self.size))
         self.stack = Stack(*self._entries, len(self.parts), (self.size, self.size))
         self.real = np.isrealobj(table.value)
+        self.cuts = [(self.parts.index(monomial), unknown, self.rows[equation.name], bound)
+                     for equation in table.system.equations for unknown, monomial, bound in equation.cuts]
 
     def _place(self, table):
         """Number unknowns and rows: interior interleaved layer by layer, then the border, then the tails.
@@ -83,7 +85,7 @@ class Pencil:
         free = used & (columns < 0)
         self.size = self.interior + int(free.sum())
         columns[free] = np.arange(self.interior, self.size)
-        rows = np.full((len(extra) + len(system.conditions), width + int(extra.max()) + TAIL), -1)
+        rows = np.full((len(extra) + len(system.conditions), width + int(extra.max()) + table.tail), -1)
         rows[field, j - 1 + extra[field]] = np.arange(self.interior)
         rows[len(extra):, 0] = np.arange(self.interior, self.interior + len(system.conditions))
         self.columns = {name: places[mask] for name, places, mask in zip(table.unknowns, columns, used, strict=True)}
@@ -92,7 +94,7 @@ class Pencil:
         self.rows["conditions"] = rows[len(extra):, 0]
         self.last = np.array([self.rows[equation.name][-_LAST:] for equation in system.equations])
         for i, count in enumerate(self.degree + extra):
-            rows[i, count: count + TAIL] = self.size + i * TAIL + np.arange(TAIL)
+            rows[i, count: count + table.tail] = self.size + i * table.tail + np.arange(table.tail)
         return columns, rows
 
     def weights(self, symbols):
@@ -108,10 +110,31 @@ class Pencil:
         inside = np.arange(len(self.parts)) < self.first_b
         return np.where(inside.reshape(-1, *[1] * np.ndim(rate)), 1.0, rate)
 
+    def cut(self, weights, y, x):
+        """Bound on what series left out change y^T (A - rate B) x, (points,); `weights` (parts, points) of the parts.
+
+        The T-coefficients of a residual are integrals over the angle: y^T times those of g is the mean of Y g with
+        Y = y_0 + 2 (y_1 T_1 + y_2 T_2 + ...). With a coefficient of the unknown f wrong by delta at most, it is wrong
+        by delta times the mean of |Y f|.
+        """
+        total = np.zeros(x.shape[1])
+        for part, unknown, rows, bound in self.cuts:
+            series = chebyshev.basis(self.degree)[int(unknown.endswith("'"))] @ x[self.columns[unknown.rstrip("'")]]
+            adjoint = 2 * y[rows]
+            adjoint[0] /= 2
+            total += bound * np.abs(weights[part]) * np.mean(self._sizes(adjoint) * self._sizes(series), axis=1)
+        return total
+
+    def _sizes(self, series):
+        """Moduli of T-series (terms, points) at Chebyshev points, twice as many as there are terms."""
+        padded = np.zeros((series.shape[1], 2 * self.degree + 2), series.dtype)
+        padded[:, :len(series)] = series.T
+        return np.abs(chebyshev.values(padded))
+
     @cached_property
     def tail(self):
         part, row, column, value = self._beyond
-        return Stack(part, row - self.size, column, value, len(self.parts), (TAIL * len(self.last), self.size))
+        return Stack(part, row - self.size, column, value, len(self.parts), (self._tail * len(self.last), self.size))
 
     @cached_property
     def _b(self):

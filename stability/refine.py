@@ -33,8 +33,8 @@ class Eigen:
     """Eigenvalues of a pencil at several points: arrays (points,), vectors (points, size).
 
     `rate` with its `slope` in k; `truncation`, the standard deviation `rounding` and the `spread` from
-    uncertain symbols, all in units of the rate; `x`, `y` right and left vectors with y^H B x = 1; `settled`
-    tells where the quotient is converged to rounding.
+    uncertain symbols and coefficients, all in units of the rate; `x`, `y` right and left vectors with y^H B x = 1;
+    `settled` tells where the quotient is converged to rounding.
     """
 
     rate: np.ndarray
@@ -194,6 +194,8 @@ def _quotient(pencil, weights, x, y, settled, bars):
     y = y / norm
     slope = (weights.slope * brackets * power).sum(axis=0) / norm
     spread = (weights.spread * np.abs(brackets * power)).sum(axis=0) / np.abs(norm)
+    if pencil.cuts:
+        spread += pencil.cut(weights.value * power, y, x)
     variance = np.zeros(len(norm))
     if bars:
         variance += (square(weights.value * power) * stack.squares(y, x)).sum(axis=0)  # of matrix entries

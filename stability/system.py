@@ -9,22 +9,24 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from . import chebyshev
 from .errors import ConditionCount
 from .forms import symbol
-from .layer import FIELDS, residuals
+from .layer import FIELDS, residuals, resolved
 
 _EQUATIONS = ("shear rate", "continuity", "momentum along", "momentum across")
-_SAMPLES = 96  # points that carry the base flow: its series is then exact to rounding
 
 
 @dataclass(frozen=True)
 class Equation:
-    """One first-order equation: its terms, and how many rows it takes beyond the degree."""
+    """One first-order equation: its terms, and how many rows it takes beyond the degree.
+
+    `cuts` are (unknown, monomial, bound) of the terms whose series leave out more than rounding.
+    """
 
     name: str
     terms: tuple
     extra: int
+    cuts: tuple = ()
 
 
 class System:
@@ -36,7 +38,8 @@ class System:
         layers = flow.layers(names)
         self.fields = tuple(f"{layer.name}.{field}" for layer in layers for field in FIELDS)
         self.surfaces = tuple(flow.surfaces)
-        self.equations = tuple(equation for layer in layers for equation in self._equations(layer, names, flow.order))
+        self.equations = tuple(equation for index in range(len(layers))
+                               for equation in self._equations(flow, layers, index, names))
         edges = SimpleNamespace(**{layer.name: tuple(_edge(layer, end) for end in (0, 1)) for layer in layers})
         self.conditions = tuple(self._terms(form) for form in flow.conditions(edges, names))
         self.dynamic_layers = sum(not layer.steady for layer in layers)
@@ -53,26 +56,44 @@ class System:
 
     __hash__ = None  # type: ignore[assignment]
 
-    def _equations(self, layer, names, order):
+    @property
+    def longest(self):
+        """Terms of the longest series."""
+        return max(len(series) for equation in self.equations for *_, series in equation.terms)
+
+    def _equations(self, flow, layers, index, names):
+        layer = layers[index]
         fields = [symbol(f"{layer.name}.{field}") for field in FIELDS]
         slopes = [symbol(f"{layer.name}.{field}'") for field in FIELDS]
         rate = 0.0 if layer.steady else names.rate
-        forms = residuals(layer.profile(chebyshev.points(_SAMPLES)), names.k, rate, fields, slopes, order)
-        for name, form in zip(_EQUATIONS, forms, strict=True):
-            yield Equation(f"{layer.name}: {name}", self._terms(form), layer.singular if name == "shear rate" else 0)
+        keys = []
+
+        def coefficients(base, s):
+            forms = residuals(base, names.k, rate, fields, slopes, flow.order)
+            keys[:] = [(equation, product) for equation, form in enumerate(forms) for product in form.terms]
+            return [forms[equation].terms[product] for equation, product in keys]
+
+        fit = resolved(flow, layers, index, coefficients)
+        cuts = fit.cut.tolist()
+        for equation, name in enumerate(_EQUATIONS):
+            here = [(*self._split(product), series, cut)
+                    for (index, product), series, cut in zip(keys, fit.series, cuts, strict=True)
+                    if index == equation and (len(series) > 1 or series[0])]
+            yield Equation(f"{layer.name}: {name}", tuple(term[:3] for term in here),
+                           layer.singular if name == "shear rate" else 0,
+                           tuple((unknown, monomial, cut) for unknown, monomial, _, cut in here if cut))
 
     def _terms(self, form):
-        """Split every term of a form into its one unknown, its monomial and its series."""
-        terms = []
-        for names, coefficient in form.terms.items():
-            if not np.any(coefficient):
-                continue
-            unknowns = [name for name in names if name.rstrip("'").partition("@")[0] in self.fields + self.surfaces]
-            if len(unknowns) != 1:
-                raise ValueError(f"an equation must be linear in the unknowns: got {'*'.join(names) or 'a constant'}")
-            monomial = tuple(name for name in names if name != unknowns[0])
-            terms.append((unknowns[0], monomial, _series(coefficient)))
-        return tuple(terms)
+        """Split every term of a condition into its one unknown, its monomial and its number as a series."""
+        return tuple((*self._split(names), _series(number)) for names, number in form.terms.items() if number)
+
+    def _split(self, names):
+        """The one unknown among the names of a product, and the monomial of the others."""
+        all_ = self.fields + self.surfaces
+        unknowns = [name for name in names if name.rstrip("'").partition("@")[0] in all_]
+        if len(unknowns) != 1:
+            raise ValueError(f"an equation must be linear in the unknowns: got {'*'.join(names) or 'a constant'}")
+        return unknowns[0], tuple(name for name in names if name != unknowns[0])
 
 
 def _same(one, other):
@@ -80,7 +101,8 @@ def _same(one, other):
     if isinstance(one, np.ndarray):
         return np.array_equal(one, other)
     if isinstance(one, Equation):
-        return one.name == other.name and one.extra == other.extra and _same(one.terms, other.terms)
+        alike = (one.name, one.extra, one.cuts) == (other.name, other.extra, other.cuts)
+        return alike and _same(one.terms, other.terms)
     if isinstance(one, tuple):
         return len(one) == len(other) and all(_same(a, b) for a, b in zip(one, other, strict=True))
     return one == other
@@ -90,11 +112,9 @@ def _edge(layer, end):
     return SimpleNamespace(**{field: symbol(f"{layer.name}.{field}@{end}") for field in FIELDS})
 
 
-def _series(coefficient):
-    """T-coefficients of a coefficient given at the sample points, or of a number; real if it is real."""
-    value = np.asarray(coefficient)
-    value = value if np.any(value.imag) else value.real
-    return chebyshev.coefficients(value) if value.ndim else np.atleast_1d(value)
+def _series(number):
+    """A number as a series of one term; real if it is real."""
+    return np.array([number if number.imag else number.real])
 
 
 def _check_count(flow, layers, given):

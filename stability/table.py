@@ -8,7 +8,7 @@ import numpy as np
 
 from . import chebyshev
 
-TAIL = 8  # coefficients kept beyond the truncation, per equation
+_TAIL = 8  # least number of coefficients kept beyond the truncation, per equation
 
 
 class Table:
@@ -16,11 +16,12 @@ class Table:
 
     Entry `value` multiplies column `column` of the unknown number `unknown` (fields first, then surfaces) in row `row`
     of the equation number `equation` (conditions after the equations) and belongs to `part`: an index into the
-    monomials `parts`, of which those from `first_b` on carry the rate.
+    monomials `parts`, of which those from `first_b` on carry the rate. Every equation has `tail` rows beyond a degree:
+    as many as its coefficients have terms, or products with the last unknowns would go unseen.
     """
 
     def __init__(self, system, degree):
-        self.system, self.degree = system, degree
+        self.system, self.degree, self.tail = system, degree, max(_TAIL, system.longest)
         self.unknowns = (*system.fields, *system.surfaces)
         rows = [terms for _, terms in self._rows()]
         self.parts = tuple(sorted({term[1] for terms in rows for term in terms}, key=lambda m: ("rate" in m, m)))
@@ -35,7 +36,7 @@ class Table:
 
     def _equation_entries(self):
         terms = [(index, *term) for index, equation in enumerate(self.system.equations) for term in equation.terms]
-        most = self.degree + TAIL + max(equation.extra for equation in self.system.equations)
+        most = self.degree + self.tail + max(equation.extra for equation in self.system.equations)
         term, row, column, value = chebyshev.entries(
             [series for *_, series in terms], [unknown.endswith("'") for _, unknown, *_ in terms], most, self.degree)
         part, equation, unknown = np.array([(self.parts.index(monomial), index, self._number(name))
