@@ -13,13 +13,14 @@ Viscous layers and vortices (Galerkin). With the stream function phi, u = phi', 
     rho integral (sigma + i k U)(phi' chi' + k^2 phi chi) - i k U' phi chi'
         + integral eta [4 k^2 phi' chi' + (phi'' + k^2 phi)(chi'' + k^2 chi)] = [t chi' + i k n chi] over the boundary:
 
-no pressure and no condition on a free edge, whose stresses t, n enter by the amplitude s of the displaced surface, and a
-kinetic energy that is positive definite: no spurious or infinite eigenvalue. phi'' is a Legendre series, integrated
+no pressure and no condition on a free edge, whose stresses t, n enter by the amplitude s of the displaced surface, and
+a kinetic energy that is positive definite: no spurious or infinite eigenvalue. phi'' is a Legendre series, integrated
 twice from the wall; functions that vanish with their slope at both ends are those whose phi'' is orthogonal to 1 and z.
 
 Roll waves (collocation). The friction depends on the pressure, which cannot be removed. In zeta = sqrt(1 - z), from the
 surface 0 to the wall 1, unknowns are u' and n' at Chebyshev points; w, the shear stress and all else follow by
-integration from the edge where they are known, so that there is no other condition and nothing is differentiated.
+integration from the edge where they are known, so that there is no other condition and nothing is differentiated. Dunes
+likewise, with u = (shear rate) v, which leaves one condition: the friction at the yield surface.
 """
 import argparse
 import csv
@@ -31,7 +32,7 @@ from math import radians, tan
 import numpy as np
 from numpy.polynomial import chebyshev, legendre
 from scipy.linalg import lu_factor, lu_solve
-from scipy.special import eval_legendre
+from scipy.special import airye, eval_legendre
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 MOST = 480  # highest degree of a layer
@@ -209,7 +210,7 @@ class Film(Problem):
 
 
 class TwoLayer(Problem):
-    """Wall at z = -n, interface z = 0, plate at z = 1. Unknowns: s, phi(0), the common total slope, bubbles below, above.
+    """Wall at z = -n, interface z = 0, plate at z = 1. Unknowns: s, phi(0), the common total slope, bubbles.
 
     The displaced interface keeps phi' + U' s on both sides; n below less n above is -((r-1) gravity + tension k^2) s.
     """
@@ -417,6 +418,106 @@ class RollWave(Problem):
         A = [np.vstack(x) for x in zip(*(y.dense(4) for y in (shear_A, normal_A, kinematic_A)), strict=True)]
         B = [np.vstack(x) for x in zip(*(y.dense(1) for y in (shear_B, normal_B, Powers({0: last}))), strict=True)]
         return A, B
+
+
+class Dune(Problem):
+    """Bed between the yield surface zeta = r = sqrt(shields) and the interface zeta = 1 under an unbounded fluid.
+
+    With theta = shields, u = (theta - zeta^2)/(b zeta) v: continuity, friction and momentum read, ' = d/dzeta,
+
+        w' = 2 i k (theta - zeta^2)/b v,    w = 0 at r,    p = -n - 2 i k mu1 theta v,    S = sigma + i k U,
+        t = mu1/(2 zeta^2) [(theta + zeta^2)(v + p) + 2 i k b zeta^3 w - zeta (theta - zeta^2) v'],
+        t' = -2/b (theta - zeta^2)(S v + w) - 2 zeta (4 k^2 mu1 theta v - i k n),    t = -mu1 theta R s at 1,
+        n' = -2 zeta (S w - i k t),    p = s and (sigma + i k U) s = w at 1.
+
+    Unknowns: v' and n' at n points, v at r, s. The friction at r itself, where v' drops out, is the equation for v(r).
+    """
+
+    def __init__(self, shields, mu1, b, Re):
+        self.shields, self.mu1, self.b, self.Re = shields, mu1, b, Re
+        self.r = np.sqrt(shields)
+        self.speed = 2 / (3 * b) * (self.r - 1) ** 2 * (2 * self.r + 1)
+        self.span = self.speed
+
+    def degree(self, k, level):
+        reach = (self.shields - 1) / 2 * (k + 0.5 * np.sqrt(k))
+        return stepped((22 + 8 * np.sqrt(reach)) * 1.3**level)
+
+    def shift(self, k):
+        return 0.2 * min(k, 1) + k * self.span * (0.3 - 0.5j)
+
+    def at(self, k, degree):
+        known = self.__dict__.setdefault("_pencils", {})
+        if degree not in known:
+            known[degree] = self.pencil(degree)
+        A, B, C = known[degree]
+        h = 1e-4 * k
+        R = wall_response(k, self.Re)
+        dR = (8 * (wall_response(k + h, self.Re) - wall_response(k - h, self.Re))
+              - wall_response(k + 2 * h, self.Re) + wall_response(k - 2 * h, self.Re)) / (12 * h)
+        return (sum(k**p * M for p, M in enumerate(A)) + R * C, sum(k**p * M for p, M in enumerate(B)),
+                sum(p * k**(p - 1) * M for p, M in enumerate(A) if p) + dR * C,
+                sum(p * k**(p - 1) * M for p, M in enumerate(B) if p))
+
+    def pencil(self, degree):
+        n, r, theta, mu1, b = degree, self.r, self.shields, self.mu1, self.b
+        x, from0, from1, whole = _integration(n)  # x = 0 at the interface, 1 at the yield surface
+        length = r - 1
+        x = np.r_[x, 1.0]  # and the yield surface itself
+        zeta = 1 + length * x
+        depth = length * (1 - x)  # r - zeta
+        slack = depth * (r + zeta)
+        U = 2 / (3 * b) * depth**2 * (2 * r + zeta)
+        down = length * np.vstack([from0, whole])  # integrals from the interface
+        up = length * np.vstack([from1, np.zeros(n)])  # from the yield surface
+        size = 2 * n + 2
+        unit = np.eye(size, dtype=complex)
+        ones = np.ones((n + 1, 1))
+        dv, dn, v_r, s = (Powers({0: M}) for M in (unit[:n], unit[n:2 * n], unit[2 * n:2 * n + 1], unit[2 * n + 1:]))
+        v = up @ dv + ones @ v_r
+        top_v = v_r - length * whole[None, :] @ dv
+        flow = v.rows(2j * slack / b).up()
+        w = up[:, :] @ _inner(flow, n)
+        top_w = -length * whole[None, :] @ _inner(flow, n)
+        normal = down @ dn + ones @ (-1 * s - top_v.up(2j * mu1 * theta))
+        p = -1 * normal - v.up(2j * mu1 * theta)
+        lifted = np.vstack([np.eye(n), np.zeros(n)]) @ dv  # times slack, which is 0 at the yield surface
+        t = ((v + p).rows(theta + zeta**2) + w.rows(2j * b * zeta**3).up() - lifted.rows(zeta * slack)) \
+            .rows(mu1 / (2 * zeta**2))
+        x_A = (v.rows(U).up(1j) + w).rows(-2 / b * slack) - v.rows(2 * zeta).up(4 * mu1 * theta, 2) \
+            + normal.rows(2 * zeta).up(1j)
+        shear_A = down @ _inner(x_A, n) - t
+        shear_B = down @ _inner(v.rows(2 / b * slack), n)
+        normal_A = _inner((w.rows(U).up(1j) - t.up(1j)).rows(-2 * zeta), n) - dn
+        normal_B = _inner(w.rows(2 * zeta), n)
+        kinematic_A = top_w - s.up(1j * self.speed)
+        A = [np.vstack(y) for y in zip(*(z.dense(5) for z in (shear_A, normal_A, kinematic_A)), strict=True)]
+        B = [np.vstack(y) for y in zip(*(z.dense(2) for z in (shear_B, normal_B, s)), strict=True)]
+        C = np.zeros((size, size))
+        C[:n + 1, -1] = -mu1 * theta
+        return A, B, C
+
+
+def _inner(powers, n):
+    """Rows at the first n points."""
+    return Powers({p: M[:n] for p, M in powers.terms.items()})
+
+
+def wall_response(k, Re):
+    """-Ai(x0) / integral_0^inf Ai(x0 + f z) exp(-k z) dz, f = (i k Re)^(1/3), x0 = k^2/f^2, by panels of points."""
+    f = (k * Re) ** (1 / 3) * np.exp(1j * np.pi / 6)
+    x0 = (k / f) ** 2
+    x, weights = legendre.leggauss(40)
+    total, z, panel = 0, 0.0, 0.5 / (k + abs(f))
+    while True:
+        points = z + panel * (x + 1) / 2
+        at = x0 + f * points
+        values = airye(at)[0] * np.exp(-2 / 3 * at * np.sqrt(at) + 2 / 3 * x0 * np.sqrt(x0) - k * points)
+        part = panel / 2 * weights @ values
+        total += part
+        z += panel
+        if abs(part) < 1e-18 * abs(total):
+            return -airye(x0)[0] / total
 
 
 # --- eigenvalues -----------------------------------------------------------------------------------------------------
@@ -633,7 +734,7 @@ def _rollwave(rng):
 
 
 MAKE = {"film": Film, "two_layer_couette": TwoLayer, "rollwave": RollWave, "vortex": Vortex, "couette": couette,
-        "poiseuille": poiseuille}
+        "poiseuille": poiseuille, "dune": Dune}
 PARAMETERS = ("slope_deg", "Re", "We", "Fr2", "viscosity_ratio", "depth_ratio", "density_ratio", "gravity", "tension")
 
 
@@ -832,8 +933,8 @@ def write_critical(path, numbers, seed):
         "of the parameter, each change of sign followed to the root",
         "table: all values of a parameter at which the largest growth rate over all modes and 0 < k <= 100 (1e-6 <= k "
         "in the scans) changes sign, exp(i k x + sigma t); one row each, or one that says stable or unstable for the "
-        "whole range; turns +1: unstable above, -1: unstable below; k 0: long waves, k 100: at the end of the range of k; "
-        "the varied parameter is left empty among the parameters",
+        "whole range; turns +1: unstable above, -1: below; k 0: long waves, k 100: at the end of that range; the "
+        "varied parameter is left empty among the parameters",
         "scaling: that of the flows; roll waves with mu1 = tan 20.9 deg, mu2 = tan 32.76 deg",
         "digits: relative error bound of the value in error; k to about half as many digits; unresolved: number of "
         "scanned (value, k) without agreement of two degrees",
