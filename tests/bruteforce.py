@@ -967,7 +967,9 @@ def leading_spectrum(problem, k, most=30, agreement=1e-8):
     The dense eigenvalues of both degrees are recomputed one by one; each must stay where it is, all must be different,
     and no other eigenvalue of either degree may lie above the last one listed.
     """
-    degrees = problem.degree(k, 2), problem.degree(k, 3.5)
+    more = most if getattr(problem, "parity", None) is None else 2 * most
+    degrees = [np.minimum(MOST, np.asarray(problem.degree(k, level)) + int(level * more)) for level in (2, 3.2)]
+    degrees = [tuple(map(int, degree)) if degree.ndim else int(degree) for degree in degrees]
     lists = [eigenvalues(problem, k, degree)[:3 * most + 10] for degree in degrees]
     found, end = [], "enough"
     for guess in lists[1]:
