@@ -5,6 +5,7 @@ A nose, growth = d growth / dk = 0 at a finite k, is refined by Newton in (log k
 bracket: with sigma = k rate, a is the real part of d rate / dk at k = 0, where the scaled equations are regular.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import exp, log
 
@@ -61,7 +62,7 @@ def critical_zeros(land: Landscape, long_wave: bool) -> Found:
     if long_wave:
         why = None if thresholds else f"{land.flow}: no long-wave threshold in {land.vary} {_range(land)}"
         return Found(_ordered(land, thresholds), (), why)
-    zeros = [*thresholds, *_noses(land)]
+    zeros = [*thresholds, *_noses(land), *_beside_thresholds(land, thresholds)]
     zeros = [zero for rank, zero in enumerate(zeros) if not any(_near(zero, other) for other in zeros[:rank])]
     inner = [zero for zero in zeros if _inside(land, zero, zeros) or _others_grow(land, zero)]
     boundaries = _doubted(land, _ordered(land, [zero for zero in zeros if zero not in inner]))
@@ -77,6 +78,15 @@ def _noses(land):
         except (ModeLost, ParameterError) as reason:
             yield Zero(crest.point.k, crest.value, crest.point.mode, abs(a.value - b.value), abs(a.point.k - b.point.k),
                        str(reason), (b.growth - a.growth) * (b.value - a.value))
+
+
+def _beside_thresholds(land, thresholds):
+    """Noses of long waves that grow already at the threshold of infinitely long ones: no ridge leads so close."""
+    for threshold in thresholds:
+        for crest in land.column(threshold.value).crests.get(0, []):
+            if crest.point.k < land.search[0] and land.grows(crest.point):
+                with suppress(ModeLost, ParameterError):
+                    yield nose(land.planes[0], crest)
 
 
 def nose(plane, crest):
