@@ -200,7 +200,7 @@ def surface_mode(solver, k=_FIRST):
     exponents = np.log(ahead / limits) / log(1.01)
     agreeing = []
     for k, limit, exponent in zip(tried.tolist(), limits, exponents, strict=True):
-        mode, distance = _glance(solver, k, limit, exponent)
+        mode, distance = _glance(solver, k, limit, exponent, agreeing[-1][0] if agreeing else None)
         if agreeing and not distance < max(_CLOSER[0] * agreeing[-1][1], _CLOSER[1]):
             agreeing = []
         if distance < _AGREEMENT:
@@ -214,10 +214,14 @@ def surface_mode(solver, k=_FIRST):
     raise ModeLost(f"{solver.flow}: no mode obeys the long-wave limit down to k = {k:.1e}")
 
 
-def _glance(solver, k, limit, exponent):
-    """The mode next to the long-wave limit, and how far from it, relative; None and infinity where none settles."""
+def _glance(solver, k, limit, exponent, above=None):
+    """The mode next to the long-wave limit, and how far from it, relative; None and infinity where none settles.
+
+    `above` is the one that was found at the wavenumber before, if any.
+    """
+    vectors = (above.degree, above.x, above.y) if above else None
     try:
-        mode = solver.solve(k, limit / solver.width(k), glance=True)
+        mode = solver.solve(k, limit / solver.width(k), vectors, glance=True)
     except ModeLost:
         return None, np.inf
     return mode, _distance(mode, limit, exponent)

@@ -38,6 +38,7 @@ _UNEVEN = 0.2  # departure of growth between two nodes from the mean of its end 
 _FINEST = 6  # halvings of a stretch between two nodes
 _ITERATIONS = 40
 _SETTLED = 1e-15  # relative step in k
+_NEAR = 1e-4  # relative way from a known mode within which vectors are refined twice
 _APART = 1e-5  # relative distance of two k from which the slopes there give the curvature
 _NOISE = 5.0  # times its error that a difference or slope of growth must have to be judged by
 _SCATTER = 4.0  # error of a slope in units of its change when the vectors are refined once more (measured)
@@ -63,7 +64,7 @@ def default_mode(flow):
     """Whose crests are meant unless told otherwise: those of all modes, "leading", or in ill-posed flows "surface"."""
     if not flow.has_surface_mode():
         return "leading"
-    return "leading" if flow.rivals and not ill_posed_somewhere(flow) else "surface"
+    return "surface" if ill_posed_somewhere(flow) else "leading"
 
 
 def search_of(flow):
@@ -92,9 +93,9 @@ def surface_look(solver, low, high):
     branch = surface_branch(solver)
     start = _long_waves(branch, low)
     reached, rough = branch.reach(high), solver.rough(ROUGH)
-    nodes = [_heard(solver, node) for part in branch.segments for node in part if start <= node.k < high]
-    if reached:
-        nodes.append(branch.at([high])[0][high])
+    nodes = [node for part in branch.segments for node in part if start <= node.k]
+    inside = sum(node.k < high for node in nodes)
+    nodes = [_heard(solver, node) for node in nodes[: inside + 1]]
     brackets = [pair for a, b in pairwise(nodes) for pair in _brackets(rough, a, b)]
     return Look(brackets, (nodes[:1], nodes[-1:] if reached else []), None if reached else branch.why_lost(high))
 
@@ -235,14 +236,14 @@ def crest(solver, left, right):
     low, high, now, scatter = left, right, min(left, right, key=lambda end: abs(end.slope.real)), 0.0
     curvature, k = (right.slope.real - left.slope.real) / (right.k - left.k), _hermite(left, right)
     for _ in range(_ITERATIONS):
-        before, (now, again) = now, _moved(solver, low if k - low.k < high.k - k else high, k)
+        near = low if k - low.k < high.k - k else high
+        before, (now, again) = now, _moved(solver, near, k, abs(k - near.k) < _NEAR * k)
         low, high = (now, high) if now.slope.real > 0 else (low, now)
         if abs(now.k - before.k) > _APART * now.k:
             curvature = (now.slope.real - before.slope.real) / (now.k - before.k)
-        else:
-            scatter = max(scatter, _SCATTER * abs(again - now.slope))
+        scatter = max(scatter, _SCATTER * abs(again - now.slope))
         step, noise = -now.slope.real / curvature, now.slope_error + scatter
-        if scatter and abs(step) < max(_SETTLED * now.k, 0.1 * noise / abs(curvature)):
+        if again != now.slope and abs(step) < max(_SETTLED * now.k, 0.1 * noise / abs(curvature)):
             break
         k = now.k + step if low.k < now.k + step < high.k else (low.k + high.k) / 2
     error = float((abs(now.slope.real) + noise) / abs(curvature))
@@ -259,10 +260,9 @@ def middle_of(solver, left, right):
     return _moved(solver, left if k - left.k < right.k - k else right, k)[0], (b - a) / log(right.k / left.k)
 
 
-def _moved(solver, near, k):
-    """The mode `near` at a wavenumber close by, and its slope from the vectors before they were refined once more.
-
-    The difference of the two slopes shows how far rounding scatters them where another mode is near.
+def _moved(solver, near, k, twice=False):
+    """The mode `near` at a wavenumber close by, and its slope; from the vectors before they were refined once more,
+    where that is done `twice`: the difference shows how far rounding scatters slopes where another mode is near.
     """
     try:
         mode = solver.solve(k, near.rate + (k - near.k) * near.rate_slope, (near.degree, near.x, near.y))
@@ -270,7 +270,7 @@ def _moved(solver, near, k):
             mode = Walk(solver, near).to(k)
     except ModeLost:
         mode = Walk(solver, near).to(k)
-    return solver.solve(k, mode.rate, (mode.degree, mode.x, mode.y)), mode.slope
+    return (solver.solve(k, mode.rate, (mode.degree, mode.x, mode.y)) if twice else mode), mode.slope
 
 
 def _hermite(low, high):

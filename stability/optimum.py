@@ -193,17 +193,18 @@ def _optimum(solver, search, mode):
         solver.flow.long_wave(1.0)  # says so
     low, high = search or search_of(solver.flow)
     settings = {"mode": mode, "tolerance": solver.tolerance, "max_degree": solver.degrees[-1]}
+    if solver.flow.decays:
+        return Optimum(solver.flow, (), _stable("leading", high), settings)
     try:
         looks = [surface_look(solver, low, high)] if solver.flow.has_surface_mode() else []
-        looks += [look(solver, low, high)] if mode == "leading" and solver.flow.rivals else []
+        looks += [look(solver, low, high)] if mode == "leading" else []
     except ModeLost as reason:
         return Optimum(solver.flow, (), str(reason), settings)
     found, lost = _maxima(solver, [pair for one in looks for pair in one.brackets])
     inside = [one for one in found if search is None or low <= one.k <= high]
     maxima = _distinct(sorted(inside, key=lambda one: -one.growth_rate))
     doubt = lost or (_outdone(solver, maxima[0]) if maxima and mode == "leading" else None)
-    others = mode == "surface" and solver.flow.rivals
-    status = doubt or _status(solver, looks, found, maxima, others, low, high)
+    status = doubt or _status(solver, looks, found, maxima, mode, low, high)
     return Optimum(solver.flow, tuple(maxima), status, settings)
 
 
@@ -246,8 +247,8 @@ def _distinct(maxima):
     return kept
 
 
-def _status(solver, looks, found, maxima, others, low, high):
-    """Whether the largest maximum is known to be the answer, or why not; `others`: modes that were not looked at."""
+def _status(solver, looks, found, maxima, mode, low, high):
+    """Whether the largest maximum is known to be the answer, or why not."""
     trouble = [one.trouble for one in looks if one.trouble]
     if trouble:
         return trouble[0]
@@ -261,7 +262,9 @@ def _status(solver, looks, found, maxima, others, low, high):
         return f"growth still rises at k = {high:g}, the end of the search"
     if outside or below:
         return f"growth is larger at k = {min([*outside, *below], key=lambda one: one.k).k:.6g}, outside of the search"
-    if not maxima:
-        which = "the surface mode does not grow" if others else "no waves grow"
-        return f"{STABLE}: {which} for k up to {high:g}"
-    return maxima[0].status
+    return maxima[0].status if maxima else _stable(mode, high)
+
+
+def _stable(mode, high):
+    which = "the surface mode does not grow" if mode == "surface" else "no waves grow"
+    return f"{STABLE}: {which} for k up to {high:g}"

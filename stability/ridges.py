@@ -119,6 +119,8 @@ class Landscape:
         except ParameterError:
             return None
         self.modes.add(mode)
+        if self.flow.decays:
+            return Column(value, {}, False, None)
         crests, trouble, grows = {}, None, False
         for half, plane in enumerate(self.rough):
             solver, found = plane.solver(value), []
@@ -146,7 +148,7 @@ class Landscape:
     def _looks(self, mode):
         """What is looked at: the surface mode, and all modes."""
         return [kind for kind, wanted in ((surface_look, self.flow.has_surface_mode()),
-                                          (look, mode == "leading" and self.flow.rivals)) if wanted]
+                                          (look, mode == "leading")) if wanted]
 
     def crossings(self):
         """Yield pairs of neighbouring crests of a ridge (a, b) with growth of opposite signs, over the whole span."""

@@ -17,6 +17,7 @@ DEGREES = (8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 128, 160, 
            384, 512)
 TOLERANCE = 1e-10  # default bound on error / |sigma| for a resolved mode
 
+_FAR_BELOW = 1e-15  # relative truncation error that is aimed at with the default tolerance
 _LEAST = 32  # degree of the smallest table of entries
 _TOGETHER = 16  # groups refined at once: their vectors stay in the cache
 _EPS = np.finfo(float).eps
@@ -54,16 +55,16 @@ class Assembly:
 class Solver:
     """Refines modes of one flow to a relative tolerance, within a largest degree.
 
-    The degree is raised until the truncation error is half the tolerance asked for, or below
-    rounding; with the default tolerance until it is far below, since that costs little. Without `bars`
-    errors are truncation alone.
+    The degree is raised until the truncation error is half the tolerance asked for, or below rounding; with the
+    default tolerance and smaller ones until it is far below, since that costs little. Without `bars` errors are
+    truncation alone.
     """
 
     def __init__(self, flow, tolerance=TOLERANCE, max_degree=DEGREES[-1], assembly=None, bars=True):
         self.flow = flow
         self.bars = bars
         self.tolerance = tolerance
-        self.truncation = 1e-5 * tolerance if tolerance == TOLERANCE else 0.5 * tolerance
+        self.truncation = 0.5 * tolerance if tolerance > TOLERANCE else min(0.5 * tolerance, _FAR_BELOW)
         self.degrees = tuple(d for d in DEGREES if d <= max_degree) or (max_degree,)
         self.assembly = assembly or Assembly(flow)
         self.pencil = self.assembly.pencil

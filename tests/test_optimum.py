@@ -56,7 +56,7 @@ def test_small_reynolds_numbers_scale_with_the_root(Re, kappa):
 
 @pytest.mark.parametrize("flow", [flows.Vortex(), flows.Vortex(Fr2=50.0), flows.Dune(shields=1.5, depth=10.0, Re=0.1)])
 def test_flows_that_decay_have_none(flow):
-    which = "the surface mode does not grow" if flow.rivals else "no waves grow"  # other modes of the bed may
+    which = "no waves grow" if flow.decays else "the surface mode does not grow"  # other modes of the bed may
     with pytest.raises(NotResolved, match=f"stable: {which} for k up to"):
         k_max(flow)
     found = k_max(flow, strict=False)

@@ -42,7 +42,7 @@ class Flow:
     functions: ClassVar[tuple[str, ...]] = ()
     bottom: ClassVar[float] = 0.0  # z of the lowest edge
     wavenumber: ClassVar[float] = 1.0  # at which the mode leads that is followed where there is no surface mode
-    rivals: ClassVar[bool] = True  # whether modes other than the surface mode may grow
+    decays: ClassVar[bool] = False  # whether it is known that all modes of all such flows decay
     reflection: ClassVar[int] = 0  # of w in the lowest edge, 1 even or -1 odd, where that is a line of symmetry
 
     def __post_init__(self) -> None:

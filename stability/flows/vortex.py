@@ -22,7 +22,7 @@ class Vortex(Flow):
     scales: ClassVar[str] = ("length: depth h of the layer; velocity: I(tan slope) sqrt(phi g h cos slope) h/d; "
                              "time: h over velocity; Fr2: velocity^2 / (g h cos slope), thesis (4.6)")
     order: ClassVar[int] = 1
-    rivals: ClassVar[bool] = False  # nothing feeds the energy of motion and raised surface: all modes decay
+    decays: ClassVar[bool] = True  # nothing feeds the energy of motion and raised surface
     surfaces: ClassVar[tuple[str, ...]] = ("s0",)
 
     slope_deg: float = parameter(30.0, 0, 90, look=(1.0, 89.0), meaning="inclination of the plane, degrees")
