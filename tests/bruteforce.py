@@ -840,7 +840,7 @@ class Critical:
                         p, k, error = attempt(unstable, stable)
                     except (Unresolved, ValueError):
                         continue
-                    beyond = p * (1 + 2e-7 * np.sign(stable - unstable))
+                    beyond = p * (1 + 3e-9 * np.sign(stable - unstable))
                     if not self.grows(beyond):
                         return p, k, error
                     if (beyond - unstable) * (stable - beyond) > 0:
