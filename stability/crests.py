@@ -32,7 +32,7 @@ _POINTS = 32  # at which that spread is taken
 _FIT, _CLEARLY = 0.3, 0.1  # departure of two modes from one curve, relative to its size and to that of other pairs
 _DECADE = 10.0
 _DECADES = 16  # below the search in which the long-wave regime is sought
-_POWERS = 0.9, 2.5  # of k, between which growth lies in long waves
+_POWERS, _CHANGE = (0.9, 2.5), 0.3  # of k, between which growth lies in long waves, and what they may vary in a decade
 _REGIME = 0.02  # change of the local power of the long-wave law in a decade that its own regimes differ by
 _UNEVEN = 0.2  # departure of growth between two nodes from the mean of its end slopes beyond which they get a middle
 _FINEST = 6  # halvings of a stretch between two nodes
@@ -202,20 +202,16 @@ def may_grow(left, right):
 
 
 def _long_waves(branch, low):
-    """A wavenumber <= low at which, and a decade below, growth is a power of k: no crest lies lower."""
-    k, above = _last_regime(branch.solver.flow, low), None
+    """A wavenumber <= low from which down, for a decade, growth is one power of k: no crest lies lower."""
+    k = _last_regime(branch.solver.flow, low)
     for _ in range(_DECADES // 2):
-        if not branch.reach(k):
-            raise ModeLost(branch.why_lost(k))
-        node = max((node for part in branch.segments for node in part if node.k <= k), key=lambda node: node.k)
-        node = _heard(branch.solver, node)
-        power = node.k * node.slope.real / node.growth_rate if node.growth_rate else 0.0
-        if not _POWERS[0] < power < _POWERS[1]:
-            above = None
-        elif above:
-            return above
-        else:
-            above = node.k
+        if not branch.reach(k / _DECADE):
+            raise ModeLost(branch.why_lost(k / _DECADE))
+        nodes = [_heard(branch.solver, node) for part in branch.segments for node in part
+                 if k / _DECADE < node.k <= k]
+        powers = [node.k * node.slope.real / node.growth_rate if node.growth_rate else 0.0 for node in nodes]
+        if powers and _POWERS[0] < min(powers) and max(powers) < min(_POWERS[1], min(powers) + _CHANGE):
+            return max(node.k for node in nodes)
         k /= _DECADE
     raise ModeLost(f"{branch.solver.flow}: growth follows no power of k down to k = {k:.1e}")
 
