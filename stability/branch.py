@@ -20,7 +20,7 @@ _ROUGH = 1e-4  # tolerance of the walk; what is asked for is refined to full acc
 _FIRST, _FACTOR, _TRIES = 0.04, 5.0, 30  # wavenumbers at which the long-wave limit is sought: each a part of the last
 _AGREEMENT = 0.03  # of the surface mode with its long-wave limit, in value and in slope
 _CONFIRMED = 3  # wavenumbers in a row, each a part of the last, at which it must agree
-_CLOSER = 0.8, 1e-3  # factor by which each must be nearer to the limit than the one before, and what is near enough
+_NO_FARTHER = 1.5, 1e-3  # factor in its distance from the limit that each may have over the one before, and a floor
 _FEW = 3  # wavenumbers that are refined one by one
 _MANY = 8  # wavenumbers between two nodes that are refined one by one
 _STRIDE = 2.0  # of n more than these every _STRIDE sqrt(n)-th becomes a node first
@@ -192,8 +192,8 @@ def surface_branch(solver):
 def surface_mode(solver, k=_FIRST):
     """Return the slow surface mode at a wavenumber <= k from which on it obeys its long-wave limit.
 
-    Value and logarithmic slope must agree there, and again at a fifth and a twenty-fifth of it, ever closer: another
-    mode can meet one of them by chance.
+    Value and logarithmic slope must agree there, and again at a fifth and a twenty-fifth of it, no worse: another mode
+    can meet one of them by chance.
     """
     tried = k / _FACTOR ** np.arange(_TRIES)
     limits, ahead = np.split(solver.flow.long_wave(np.concatenate((tried, 1.01 * tried))), 2)
@@ -201,7 +201,7 @@ def surface_mode(solver, k=_FIRST):
     agreeing = []
     for k, limit, exponent in zip(tried.tolist(), limits, exponents, strict=True):
         mode, distance = _glance(solver, k, limit, exponent, agreeing[-1][0] if agreeing else None)
-        if agreeing and not distance < max(_CLOSER[0] * agreeing[-1][1], _CLOSER[1]):
+        if agreeing and not distance < max(_NO_FARTHER[0] * agreeing[-1][1], _NO_FARTHER[1]):
             agreeing = []
         if distance < _AGREEMENT:
             agreeing.append((mode, distance, limit, exponent))

@@ -32,7 +32,10 @@ _POINTS = 32  # at which that spread is taken
 _FIT, _CLEARLY = 0.3, 0.1  # departure of two modes from one curve, relative to its size and to that of other pairs
 _DECADE = 10.0
 _DECADES = 16  # below the search in which the long-wave regime is sought
-_POWERS, _CHANGE = (0.9, 2.5), 0.3  # of k, between which growth lies in long waves, and what they may vary in a decade
+_VANISHING = 1e-9  # wavenumber that stands for 0
+_AGREEMENT = 0.03  # of the mode there with the long-wave limit
+_POWERS = 0.9, 2.5  # of k, between which growth lies there
+_FACTOR, _CHANGE = 1.5, 0.3  # of growth, and in its power, from what it is there, in long waves
 _REGIME = 0.02  # change of the local power of the long-wave law in a decade that its own regimes differ by
 _UNEVEN = 0.2  # departure of growth between two nodes from the mean of its end slopes beyond which they get a middle
 _FINEST = 6  # halvings of a stretch between two nodes
@@ -202,18 +205,31 @@ def may_grow(left, right):
 
 
 def _long_waves(branch, low):
-    """A wavenumber <= low from which down, for a decade, growth is one power of k: no crest lies lower."""
+    """A wavenumber <= low from which down, for a decade, growth is what it is as k -> 0: no crest lies lower."""
     k = _last_regime(branch.solver.flow, low)
-    for _ in range(_DECADES // 2):
+    growth, power = _as_k_vanishes(branch, k)
+    for _ in range(_DECADES):
         if not branch.reach(k / _DECADE):
             raise ModeLost(branch.why_lost(k / _DECADE))
         nodes = [_heard(branch.solver, node) for part in branch.segments for node in part
                  if k / _DECADE < node.k <= k]
-        powers = [node.k * node.slope.real / node.growth_rate if node.growth_rate else 0.0 for node in nodes]
-        if powers and _POWERS[0] < min(powers) and max(powers) < min(_POWERS[1], min(powers) + _CHANGE):
+        if nodes and all(_FACTOR > node.growth_rate / growth(node.k) > 1 / _FACTOR and
+                         abs(node.k * node.slope.real / node.growth_rate - power) < _CHANGE for node in nodes):
             return max(node.k for node in nodes)
         k /= _DECADE
     raise ModeLost(f"{branch.solver.flow}: growth follows no power of k down to k = {k:.1e}")
+
+
+def _as_k_vanishes(branch, k):
+    """Growth as a power of k, (function of k, the power), at a wavenumber far below k."""
+    solver, start = branch.solver, branch.start
+    k = min(_VANISHING, k / _DECADE**3)
+    limit = complex(solver.flow.long_wave(np.array([k]))[0])
+    mode = solver.solve(k, limit / solver.width(k), (start.degree, start.x, start.y))
+    power = k * mode.slope.real / mode.growth_rate if mode.growth_rate else 0.0
+    if abs(mode.sigma / limit - 1) > _AGREEMENT or not _POWERS[0] < power < _POWERS[1]:
+        raise ModeLost(f"{solver.flow}: growth follows no power of k at k = {k:.1e}")
+    return lambda other: mode.growth_rate * (other / k) ** power, power
 
 
 def _last_regime(flow, low):

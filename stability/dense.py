@@ -26,7 +26,8 @@ def dense_degrees(solver, first, step=1):
     """Degrees for dense problems, from rung `first` on, as far as one takes no longer than about a second."""
     layers = len(solver.assembly.system.fields)
     affordable = [degree for degree in solver.degrees if degree * layers <= _LARGEST] or solver.degrees[:1]
-    return affordable[first::step] or affordable[-1:]
+    chosen = list(affordable[first::step])
+    return chosen if chosen[-1:] == list(affordable[-1:]) else [*chosen, affordable[-1]]
 
 
 def finite_rates(solver, degree, symbols):

@@ -19,6 +19,7 @@ from .errors import ModeLost, naming
 from .status import doubtful, is_resolved
 
 FIRST = 6  # rung of the degrees at which a look starts
+_MORE = 10  # eigenvalues beside twice the number asked for that are tried where they do not settle
 _LOWEST = 3  # rung below which a look at modes near zero growth does not start
 _SPARE = 3  # eigenvalues behind the last one asked for among which the widest gap is taken for the line
 _DRIFT = 1e-4  # relative difference of a rate between two degrees that counts as settled
@@ -126,9 +127,12 @@ def _as_far_as_settled(classes, count, degree):
     """The listing where the modes asked for do not settle: a sure part, if there is one, and the others behind it."""
     rates = _all_rates(classes)
     found = _found(classes, _line(rates, count), degree)
+    if len(found.modes) < count:  # some led to none: those behind them are tried
+        found = _found(classes, _line(rates, 2 * count + _MORE), degree)
     doubt = f"the least stable modes do not settle up to degree {degree}"
-    for fewer in range(count - 1, 0, -1):
-        line = _line(rates, fewer)
+    growth = np.sort(rates.real)[::-1]
+    for behind in range(min(count + _SPARE, len(growth) - 1), 0, -1):
+        line = (growth[behind - 1] + growth[behind]) / 2
         if all(one.settled(line) for one in classes):
             part = _found(classes, line, degree)
             sure = set(part.modes[: part.sure])

@@ -25,6 +25,7 @@ _EPS = np.finfo(float).eps
 _TINY = np.finfo(float).tiny
 _FACTORISATIONS = 12
 _SWEEPS = 12  # of the shared iteration
+_VECTOR = 1e-9  # error of a vector, and so of the slope, that is accepted
 _OFFSET = 1e-3  # of a shared factorisation from its rate: it must not be singular
 
 
@@ -169,8 +170,8 @@ def _converging(step, vectors, before):
 
 
 def _settled(x_error, y_error):
-    """Whether the quotient of two vectors with these errors is right to rounding."""
-    return (x_error * y_error < 0.1 * _EPS) & (np.maximum(x_error, y_error) < 1e-6)
+    """Whether the quotient of two vectors with these errors is right to rounding, and its slope nearly so."""
+    return (x_error * y_error < 0.1 * _EPS) & (np.maximum(x_error, y_error) < _VECTOR)
 
 
 def _size(vectors):

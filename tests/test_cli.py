@@ -168,8 +168,12 @@ BAD = [
     (("dispersion", "dune", "--k", "1", "-o", "x.png", "--plot", "./x.png"), "--plot: './x.png' is the file of -o too"),
     (("dispersion", "dune", "--k", "1", "--csv", "-o", "x.json"), "-o: --csv contradicts the ending of 'x.json'"),
     (("spectrum", "dune", "--k", "1", "--json", "-o", "x.nc"), "-o: --json contradicts the ending of 'x.nc'"),
-    (("kmax", "poiseuille"), "poiseuille has no slow surface mode, and k_max is that of the surface mode"),
-    (("kmax", "couette", "--method", "bvp"), "couette has no slow surface mode, and k_max is"),
+    (("kmax", "poiseuille", "--mode", "surface"), "poiseuille has no slow surface mode"),
+    (("kmax", "poiseuille", "--mode", "fastest"), "--mode: must be one of surface, leading (got 'fastest')"),
+    (("kmax", "dune", "--search", "1"), "--search: give a range (low, high)"),
+    (("kmax", "dune", "--search", "1:2", "--method", "bvp"), "--search: --method bvp does not use it"),
+    (("critical", "film", "--vary", "Re", "--range", "5:1"), "--range: give a range (low, high)"),
+    (("kmax", "couette", "--method", "bvp"), "couette has no slow surface mode, the one that is continued"),
     (("critical", "dune", "--vary", "depth"), "dune: depth = inf cannot be varied; start from a finite depth"),
     (("neutral", "dune", "--vary", "depth", "--over", "Re=1,2"), "dune: depth = inf cannot be varied"),
     (("kmax", "dune", "--over", "Re=1,inf"), "--over Re: not a finite number: 'inf'"),
@@ -256,7 +260,7 @@ NETCDF = {
     "dispersion vortex --k 1,2": ("k", 2), "spectrum vortex --k 1 --modes 3": ("mode", 3),
     "spectrum vortex --k 1,2 --modes 3": ("mode", 6), "kmax dune --over depth=2,inf": ("depth", 2),
     "neutral film --vary Re --over We=0,1": ("We", 2), "neutral film --vary Re --k 0.1,0.2": ("point", 2),
-    "critical film --vary Re": ("flow", 1), "sensitivity vortex --k 1": ("parameter", 3),
+    "critical film --vary Re": ("point", 2), "sensitivity vortex --k 1": ("parameter", 3),
     "wellposed vortex --points 5": ("point", 5), "wellposed vortex --k 1,2": ("k", 2),
 }
 
@@ -379,7 +383,7 @@ def test_an_interrupted_run_leaves_the_old_file(tmp_path, capsys, monkeypatch):
     def interrupt(*arguments, **options):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("stability.relation.follow", interrupt)
+    monkeypatch.setattr("stability.branch.Branch.at", interrupt)
     status, _, err = run(capsys, "dispersion", "vortex", "--k", "1", "-o", str(target))
     assert (status, err) == (130, "stability: interrupted\n")
     assert [path.read_text() for path in tmp_path.iterdir()] == ["old"]

@@ -226,7 +226,7 @@ def test_a_class_instead_of_a_flow_gets_a_hint():
         k_max(flows.Dune)
 
 
-@pytest.mark.parametrize("search", [1.0, (1.0,), (2.0, 1.0), (0.0, 1.0), "wide", None])
+@pytest.mark.parametrize("search", [1.0, (1.0,), (2.0, 1.0), (0.0, 1.0), "wide", [[]]])
 def test_bad_search_ranges_are_refused(search):
     with pytest.raises(ParameterError, match="search"):
         k_max(flows.Dune(), search)

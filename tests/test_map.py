@@ -662,7 +662,7 @@ def test_numbers_of_any_kind_are_kept_in_a_journal(tmp_path):
     assert parameter_map(BED, over, journal=tmp_path / "kept", **given).table == found.table
 
 
-def test_a_flow_without_a_surface_mode_has_no_map_of_k_max(tmp_path, capsys):
-    status, _, err = run(capsys, "map", "poiseuille", "--over", "Re=1e4,2e4", "-o", str(tmp_path / "x.csv"))
-    assert status == 2
-    assert "poiseuille has no slow surface mode; ask for growth_rate" in err
+def test_a_flow_without_a_surface_mode_is_mapped_by_its_fastest_mode():
+    found = parameter_map(flows.Poiseuille(), {"Re": [5000.0, 1e4]})
+    assert found["status"][0].startswith("stable: no waves grow")
+    assert found["k_max"][1] == k_max(flows.Poiseuille()).k_max

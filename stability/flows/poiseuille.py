@@ -28,8 +28,8 @@ class Poiseuille(Flow):
         return bottom.v, bottom.w, top.v, top.w
 
     def halves(self):
-        """Modes with w even or odd about the centreline, on 0 <= z <= 1."""
-        return EvenPoiseuille(self.Re), OddPoiseuille(self.Re)
+        """Modes with w even or odd about the centreline, on 0 <= z <= 1; a flow derived from this one stays whole."""
+        return (EvenPoiseuille(self.Re), OddPoiseuille(self.Re)) if type(self) is Poiseuille else (self,)
 
 
 @dataclass(frozen=True)

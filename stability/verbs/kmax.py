@@ -30,6 +30,9 @@ def _run(arguments):
     name, sweep = sweep_of(arguments, flow)
     bvps = [method_of(arguments, one, options["tolerance"]) for one in sweep]
 
+    if bvps[0] is not None and not flow.has_surface_mode():
+        raise ParameterError(f"--method {arguments.method}: {flow.name} has no slow surface mode, the one that is "
+                             "continued; leave it out")
     for option in ("mode", "search"):
         if bvps[0] is not None and getattr(arguments, option) is not None:
             raise ParameterError(f"--{option}: --method {arguments.method} does not use it; leave it out")

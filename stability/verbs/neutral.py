@@ -52,6 +52,8 @@ def _over(arguments, flow, vary, options):
 
 
 def _curve(arguments, flow, vary, options):
+    import numpy as np
+
     from ..neutral import NeutralCurve, NeutralPoint, joined, neutral_parts
 
     wavenumbers = parse_spec(arguments.k, "--k")
@@ -60,7 +62,7 @@ def _curve(arguments, flow, vary, options):
         def rest(done):
             points = (NeutralPoint(flow, vary, k, None, None, None, None, INTERRUPTED)
                       for k in wavenumbers[done:].tolist())
-            return [NeutralCurve(flow, vary, tuple(points), wavenumbers[:0])]
+            return [NeutralCurve(flow, vary, tuple(points), np.empty((0, 2)))]
 
         parts = neutral_parts(flow, vary, wavenumbers, **searched(arguments), **options)
         return joined(collect(arguments, parts, len(wavenumbers), rest))
