@@ -79,6 +79,11 @@ class _Class:
             return None
         return mode if abs(mode.rate - rate) < _LEAP * abs(rate) else None
 
+    def tried(self, line):
+        """Modes to which the rates above the line lead, or those of the degree before did."""
+        rates = np.concatenate((self.rates, self.before))
+        return [self._refined(rate) for rate in rates[rates.real > line]]
+
     def missing(self, modes, line):
         """How many eigenvalues above the line are not among these modes."""
         known = np.array([mode.rate for mode in modes], dtype=complex)
@@ -118,27 +123,34 @@ def _all_rates(classes):
 def _found(classes, line, degree):
     """The `Listing` of all modes above a line."""
     refined = [one.refined(line) for one in classes]
-    modes = sorted((mode for part in refined for mode in _distinct(part)), key=lambda mode: -mode.growth_rate)
+    modes = _sorted([mode for part in refined for mode in _distinct(part)])
     doubt = _doubt(classes, refined, line, degree)
-    return Listing(tuple(modes), 0 if doubt else len(modes), doubt)
+    return Listing(modes, 0 if doubt else len(modes), doubt)
 
 
 def _as_far_as_settled(classes, count, degree):
     """The listing where the modes asked for do not settle: a sure part, if there is one, and the others behind it."""
     rates = _all_rates(classes)
-    found = _found(classes, _line(rates, count), degree)
-    if len(found.modes) < count:  # some led to none: those behind them are tried
-        found = _found(classes, _line(rates, 2 * count + _MORE), degree)
     doubt = f"the least stable modes do not settle up to degree {degree}"
+    known = [_distinct(one.tried(_line(rates, 2 * count + _MORE))) for one in classes]
     growth = np.sort(rates.real)[::-1]
     for behind in range(min(count + _SPARE, len(growth) - 1), 0, -1):
         line = (growth[behind - 1] + growth[behind]) / 2
         if all(one.settled(line) for one in classes):
             part = _found(classes, line, degree)
-            sure = set(part.modes[: part.sure])
-            return Listing((*part.modes[: part.sure], *(mode for mode in found.modes if mode not in sure)),
-                           part.sure, doubt)
-    return replace(found, sure=0, doubt=doubt)
+            if part.sure:
+                return _joined(part.modes, known, doubt)
+    return _joined((), known, doubt)
+
+
+def _joined(sure, known, doubt):
+    """A listing of sure modes and, behind them, the others that are known."""
+    others = [mode for modes in known for mode in modes if not any(same(mode, other) for other in sure)]
+    return Listing((*sure, *_sorted(others)), len(sure), doubt)
+
+
+def _sorted(modes):
+    return tuple(sorted(modes, key=lambda mode: -mode.growth_rate))
 
 
 def _checked(found, count, degree):

@@ -111,7 +111,7 @@ def _root(determinant, guess, digits, radius):
             for _ in range(20):
                 f, rounding = determinant(sigma)
                 slope = (f - f_old) / (sigma - old)
-                short = rounding - mp.mag(slope * sigma * accuracy)
+                short = rounding - mp.mag(slope * sigma * accuracy) if slope else prec  # no accurate digit at all
                 if short > 0:
                     break
                 old, f_old = sigma, f

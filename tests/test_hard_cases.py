@@ -14,7 +14,7 @@ from stability import flows, spectrum
 from stability.energy import condition_numbers
 
 ROWS = table("recomputed_branch_crossing")
-CASES = {"poiseuille": (flows.Poiseuille(Re=1e6), 30), "couette": (flows.Couette(Re=13000), 30)}
+CASES = {"poiseuille": (flows.Poiseuille(Re=1e6), 40), "couette": (flows.Couette(Re=13000), 30)}
 
 
 @pytest.fixture(params=CASES)

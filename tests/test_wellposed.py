@@ -94,8 +94,8 @@ def test_no_surface_mode_no_flag():
 def test_other_modes_of_an_ill_posed_flow_carry_a_note(mode):
     """That of roll waves at k = 10 is resolved at degree 512 only: it still moves at the degrees that are compared."""
     flow = flows.RollWave(slope_deg=32.6)
-    relation = dispersion(flow, 10.0, mode)
-    assert relation.status == ("resolved",)
+    relation = dispersion(flow, 10.0, mode, strict=mode == "leading")
+    assert relation.status[0].startswith("resolved" if mode == "leading" else "others may be missing")
     assert relation.notes() == [f"{flow}: grains is ill posed between heights 0 and 1 above its lower edge"]
     assert dispersion(flows.RollWave(slope_deg=28.0), 10.0, mode, strict=False).notes() == []
     surface = dispersion(flow, 10.0, strict=False)
