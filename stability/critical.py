@@ -12,7 +12,7 @@ from math import exp, log
 import numpy as np
 
 from .errors import ModeLost, ParameterError
-from .ridges import Landscape, narrowed
+from .ridges import BUDGET, Landscape, narrowed
 from .status import RESOLVED, is_resolved
 
 _ITERATIONS = 20
@@ -47,12 +47,13 @@ class Zero:
 class Found:
     """Critical values, the first met from the stable side in front; then zeros of crests where other waves grow.
 
-    `why` says why there is none.
+    `why` says why there is none, `remark` what has not been looked at.
     """
 
     boundaries: tuple
     inner: tuple
     why: str | None
+    remark: str | None = None
 
 
 def critical_zeros(land: Landscape, long_wave: bool) -> Found:
@@ -66,7 +67,8 @@ def critical_zeros(land: Landscape, long_wave: bool) -> Found:
     zeros = [zero for rank, zero in enumerate(zeros) if not any(_near(zero, other) for other in zeros[:rank])]
     inner = [zero for zero in zeros if _inside(land, zero, zeros) or _others_grow(land, zero)]
     boundaries = _doubted(land, _ordered(land, [zero for zero in zeros if zero not in inner]))
-    return Found(boundaries, _ordered(land, inner), None if boundaries else _why_none(land))
+    remark = "crests where another one grows were not all followed" if land.spent > BUDGET else None
+    return Found(boundaries, _ordered(land, inner), None if boundaries else _why_none(land), remark)
 
 
 def _noses(land):
@@ -223,7 +225,7 @@ def _why_none(land):
     kind = "unstable" if growing[0] else "stable"
     modes = {"leading": "all modes", "surface": "the surface mode"}.get("".join(land.modes), _BOTH)
     return f"{land.flow}: {kind} at every {land.vary} {_range(land)}, k from {land.search[0]:g} to " \
-           f"{land.search[1]:g}, {modes}; start with another range"
+           f"{land.search[1]:g}, {modes}; try another range"
 
 
 def _range(land):

@@ -157,8 +157,10 @@ def _checked(found, count, degree):
     """The listing, doubtful where it has fewer than `count` modes; raises ModeLost where it has none."""
     if not found.modes:
         raise ModeLost(f"no mode settles up to degree {degree}")
-    if found.doubt is None and len(found.modes) < count:
-        return replace(found, sure=0, doubt=f"there are no more than {len(found.modes)} at degree {degree}")
+    if len(found.modes) < count:
+        doubt = f"{len(found.modes)} of {count} modes are found up to degree {degree}"
+        return replace(found, sure=0 if found.doubt is None else found.sure,
+                       doubt="; ".join(filter(None, (found.doubt, doubt))))
     return found
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from .checks import check_flag, check_range, check_wavenumbers, shown
 from .critical import critical_zeros
 from .crossings import zeros_at
-from .errors import ModeLost, NotResolved, ParameterError
+from .errors import ModeLost, NotResolved, ParameterError, naming
 from .flows.base import check_flow, span_of
 from .output import Row
 from .record import Record
@@ -78,6 +78,7 @@ class NeutralPoint(_ZeroGrowth):
     status: str
     settings: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
     others: "tuple[NeutralPoint, ...]" = field(default=(), repr=False)
+    remark: str | None = field(default=None, repr=False)
     dimension: ClassVar[str] = "point"
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
@@ -89,6 +90,9 @@ class NeutralPoint(_ZeroGrowth):
     def rows(self) -> list[Row]:
         return [{**{name: value for name, value in point.row().items() if name != "status"}, "k_error": point.k_error,
                  "status": point.status} for point in (self, *self.others)]
+
+    def notes(self) -> list[str]:
+        return [naming(self.flow, self.remark)] if self.remark else []
 
     def row(self) -> Row:
         """Return the row of this point in the table of a curve."""
@@ -200,9 +204,9 @@ def _critical(land, long_wave):
     points += [replace(point, status=inside(point.status)) for point in
                (_record(land, zero, settings) for zero in found.inner)]
     if found.boundaries:
-        return replace(points[0], others=tuple(points[1:]))
+        return replace(points[0], others=tuple(points[1:]), remark=found.remark)
     nothing = _nothing(land.flow, land.vary, 0.0 if long_wave else None, found.why)
-    return replace(nothing, settings=settings, others=tuple(points))
+    return replace(nothing, settings=settings, others=tuple(points), remark=found.remark)
 
 
 def _settings(land):

@@ -99,16 +99,16 @@ class Plane:
         solver = self.solver(point.value)
         return self.point(point.k, point.value, solver.solve(point.k, mode.rate, (mode.degree, mode.x, mode.y)))
 
-    def move(self, start, k, value):
-        """The mode of `start` at another point; in several steps where one would not be safe."""
+    def move(self, start, k, value, halvings=_HALVINGS):
+        """The mode of `start` at another point; in several steps, halved so often, where one would not be safe."""
         at, reached, step = start, 0.0, 1.0
-        for _ in range(4 * _HALVINGS):
+        for _ in range(4 * halvings):
             ahead = min(1.0, reached + step)
             point = self._step(at, start.k * (k / start.k) ** ahead if ahead < 1 else k,
                                start.value + (value - start.value) * ahead if ahead < 1 else value)
             if point is None:
                 step /= 2
-                if step < 0.5**_HALVINGS:
+                if step < 0.5**halvings:
                     break
             elif ahead == 1:
                 return point

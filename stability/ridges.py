@@ -23,6 +23,9 @@ _FEWEST = 12  # columns
 _TRIED = 300  # values at which it is asked whether the flow exists
 _ARC = 0.25  # largest step of a ridge in the logarithm of the parameter
 _SHORTEST = 1e-5  # and the smallest
+BUDGET = 150  # steps along ridges where another one grows
+_FAILURES = 20  # steps of a ridge that may be refused
+_HALVINGS = 3  # of one step in k and the parameter: what needs more is refused
 _SHIFT = 0.3  # largest way in log k that a crest may be from where it is expected
 _SETTLED = 1e-4  # step in log k within which a crest is settled
 _SETTLINGS = 10
@@ -82,7 +85,8 @@ class LongWaves:
 class Landscape:
     """Growth over k and one parameter of a flow: `columns` at the values of a `span`; `search` bounds k.
 
-    `modes` collects which were looked at, "leading" meaning all of them and "surface" that one alone.
+    `modes` collects which were looked at, "leading" meaning all of them and "surface" that one alone; `spent` counts
+    the steps along ridges where another one grows.
     """
 
     def __init__(self, flow, vary, span, search, tolerance, max_degree):
@@ -91,7 +95,7 @@ class Landscape:
         halves = range(len(flow.halves()))
         self.planes = [Plane(flow, vary, tolerance, max_degree, half) for half in halves]
         self.rough = [plane.rough(ROUGH) for plane in self.planes]
-        self.columns, self.modes = [], set()
+        self.columns, self.modes, self.spent = [], set(), 0
 
     def scan(self):
         """Fill the columns."""
@@ -154,10 +158,25 @@ class Landscape:
         """Yield pairs of neighbouring crests of a ridge (a, b) with growth of opposite signs, over the whole span."""
         for half, plane in enumerate(self.rough):
             for left, right in pairwise(self.columns):
-                for a, b in _between(plane, left.crests.get(half, []), right.crests.get(half, []), left.value,
-                                     right.value):
+                ways = self._ways(plane, left.crests.get(half, []), right.crests.get(half, []), left.value, right.value)
+                for a, b in (pair for way in ways for pair in _changes(plane, way)):
                     if max(a.point.k, b.point.k) <= self.search[1]:
                         yield a, b
+
+    def _ways(self, plane, left, right, low, high):
+        """Ridges between two columns, lists of crests: forwards, the highest first, and backwards where none arrived.
+
+        Where the highest grows all the way, whatever the others do is of less interest, and within `BUDGET`.
+        """
+        arrived, covered = [], False
+        for crest, value in [*((crest, high) for crest in _by_growth(left)), *((crest, low) for crest in right)]:
+            if value == low and any(_one(crest, other) for other in arrived) or covered and self.spent > BUDGET:
+                continue
+            way = [crest, *ridge(plane, crest, value)]
+            self.spent += len(way) * covered
+            arrived += way[-1:] if way[-1].value == high else []
+            covered = covered or way[-1].value == value and all(self.grows(one.point) for one in way)
+            yield way
 
     def long_waves(self):
         """Yield pairs of neighbouring `LongWaves` with a of opposite signs."""
@@ -226,28 +245,28 @@ def settle(plane, point, bend):
     start = point
     for _ in range(_SETTLINGS):
         if not bend < 0:
-            beside = plane.move(point, point.k * exp(_STRIDE), point.value)
+            beside = plane.move(point, point.k * exp(_STRIDE), point.value, _HALVINGS)
             bend = (beside.by_k - point.by_k) / _STRIDE
         step = -point.by_k / bend
         if not bend < 0 or abs(log(point.k / start.k) + step) > _SHIFT:
             break
         if abs(step) < _SETTLED:
             return Crest(point, bend)
-        new = plane.move(point, point.k * exp(step), point.value)
+        new = plane.move(point, point.k * exp(step), point.value, _HALVINGS)
         bend, point = (new.by_k - point.by_k) / step, new
     raise ModeLost(f"{point.mode.flow}: growth has no crest near k = {start.k:.6g}")
 
 
 def ridge(plane, crest, value):
     """Yield crests from one to the one at another value; ends early where the ridge does."""
-    now, drift, step = crest, 0.0, _ARC
+    now, drift, step, refused = crest, 0.0, _ARC, 0
     side = copysign(1.0, log(value / crest.value))
     while now.value != value:
         gap = abs(log(value / now.value))
         new = _ahead(plane, now, value if gap <= step else now.value * exp(side * step), drift)
         if new is None:
-            step = min(step, gap) / 3
-            if step < _SHORTEST:
+            step, refused = min(step, gap) / 3, refused + 1
+            if step < _SHORTEST or refused > _FAILURES:
                 return
             continue
         drift = log(new.point.k / now.point.k) / log(new.value / now.value)
@@ -259,22 +278,13 @@ def _ahead(plane, now, value, drift):
     """The crest at another value, or None where it is not found near to where it should be."""
     try:
         guess = now.point.k * exp(drift * log(value / now.value))
-        return settle(plane, plane.move(now.point, guess, value), now.bend)
+        return settle(plane, plane.move(now.point, guess, value, _HALVINGS), now.bend)
     except (ModeLost, ParameterError):
         return None
 
 
-def _between(plane, left, right, low, high):
-    """Pairs of opposite sign along all ridges between two columns: forwards, and backwards where none arrived."""
-    arrived = []
-    for crest in left:
-        way = [crest, *ridge(plane, crest, high)]
-        if way[-1].value == high:
-            arrived.append(way[-1])
-        yield from _changes(plane, way)
-    for crest in right:
-        if not any(_one(crest, other) for other in arrived):
-            yield from _changes(plane, [crest, *ridge(plane, crest, low)])
+def _by_growth(crests):
+    return sorted(crests, key=lambda crest: -crest.growth)
 
 
 def _changes(plane, way):

@@ -30,7 +30,8 @@ MOST = 200  # modes that can be asked for
 class Spectrum(Eigenvalues, Record):
     """The least stable modes of a flow at wavenumber k, sorted by decreasing growth rate.
 
-    None is missing down to the last one, and none is there twice; or `status` says where that is not sure, and why.
+    None is missing down to the last one, and none is there twice; or `status` says where that is not sure, and `doubt`
+    why.
     """
 
     flow: Any
@@ -38,6 +39,7 @@ class Spectrum(Eigenvalues, Record):
     modes: tuple[Mode, ...]
     settings: Mapping[str, Any] = field(default_factory=dict, compare=False)
     status: tuple[str, ...] = ()  # type: ignore[assignment]
+    doubt: str | None = None
     dimension: ClassVar[str] = "mode"
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
@@ -58,9 +60,7 @@ class Spectrum(Eigenvalues, Record):
         return {**super().columns(), "sigma": self.sigma, "slope": np.array([mode.slope for mode in self.modes])}
 
     def notes(self) -> list[str]:
-        from .wellposed import notes_on
-
-        return notes_on([self])
+        return _notes([self])
 
     def about(self) -> dict[str, Any]:
         return {"k": self.k}
@@ -95,9 +95,14 @@ class Spectra(Record):
         return rows + [dict.fromkeys(rows[0]) | {"k": k, "status": INTERRUPTED} for k in self.missing]
 
     def notes(self) -> list[str]:
-        from .wellposed import notes_on
+        return _notes(self.spectra)
 
-        return notes_on(list(self.spectra))
+
+def _notes(spectra):
+    from .wellposed import notes_on
+
+    doubts = [f"{one.flow}, k = {one.k:g}: {one.doubt}" for one in spectra if one.doubt]
+    return [*doubts, *notes_on(list(spectra))]
 
 
 @one_thread
@@ -120,4 +125,5 @@ def spectrum(flow: "Flow", k: float, modes: int = 10, *, tolerance: float = TOLE
         if found.sure < modes:
             raise NotResolved(f"{flow}, k={k:g}: {found.status[modes - 1 if len(found.modes) >= modes else -1]}")
     settings = {"tolerance": tolerance, "max_degree": max_degree}
-    return Spectrum(flow, k, found.modes[:modes], settings, found.status[:modes])
+    return Spectrum(flow, k, found.modes[:modes], settings, found.status[:modes],
+                    found.doubt if found.sure < modes else None)
