@@ -73,8 +73,9 @@ class Branch:
         wavenumbers = np.asarray(wavenumbers, dtype=float).tolist()
         for k in (min(wavenumbers), max(wavenumbers)):
             self.reach(k)
-        reached = [k for k in wavenumbers if self.reach(k)]
-        found, lost = {}, {k: self.why_lost(k) for k in wavenumbers if not self.reach(k)}
+        low, high = self._walks[-1].now.k, self._walks[1].now.k
+        reached = [k for k in wavenumbers if low <= k <= high]
+        found, lost = {}, {k: self.why_lost(k) for k in wavenumbers if not low <= k <= high}
         if reached:
             self.solver.prepare(np.array(reached))
         for k, mode in (self._singly(reached) if len(reached) <= _FEW else self._together(reached)).items():

@@ -24,6 +24,7 @@ from .wellposed import ill_posed_somewhere, numbers
 
 SEARCH = 1e-2, 100.0  # range of k; with a surface mode its lower end moves down until growth is a power of k
 ROUGH = 1e-4  # tolerance of the look: small systems find the brackets
+_FINER = 1e-7  # where the sign of a slope is in doubt
 
 _SHORT = 20.0  # wavenumber times thickness of a layer up to which growth is looked for at least
 _STEP = 0.3  # of the look at other modes, in log k
@@ -43,6 +44,7 @@ _ITERATIONS = 40
 _SETTLED = 1e-15  # relative step in k
 _NEAR = 1e-4  # relative way from a known mode within which vectors are refined twice
 _APART = 1e-5  # relative distance of two k from which the slopes there give the curvature
+_AUDIBLE = 1.5  # times its error that a slope of growth must have, or the mode is computed properly
 _NOISE = 5.0  # times its error that a difference or slope of growth must have to be judged by
 _SCATTER = 4.0  # error of a slope in units of its change when the vectors are refined once more (measured)
 _OVERLAP = 0.3  # largest deviation of the overlap of one step from 1
@@ -95,10 +97,10 @@ def surface_look(solver, low, high):
     """
     branch = surface_branch(solver)
     start = _long_waves(branch, low)
-    reached, rough = branch.reach(high), solver.rough(ROUGH)
+    reached, rough, finer = branch.reach(high), solver.rough(ROUGH), solver.rough(_FINER)
     nodes = [node for part in branch.segments for node in part if start <= node.k]
     inside = sum(node.k < high for node in nodes)
-    nodes = [_heard(solver, node) for node in nodes[: inside + 1]]
+    nodes = [_heard(finer, node) for node in nodes[: inside + 1]]
     brackets = [pair for a, b in pairwise(nodes) for pair in _brackets(rough, a, b)]
     return Look(brackets, (nodes[:1], nodes[-1:] if reached else []), None if reached else branch.why_lost(high))
 
@@ -179,8 +181,8 @@ def _partners(here, there):
 
 
 def _heard(solver, node):
-    """The node, computed properly where its slope of growth does not stand out from its error."""
-    if abs(node.slope.real) > _NOISE * node.slope_error:
+    """The node, computed by a finer solver where its slope of growth does not stand out from its error."""
+    if abs(node.slope.real) > _AUDIBLE * node.slope_error:
         return node
     return solver.solve(node.k, node.rate, (node.degree, node.x, node.y))
 
@@ -208,11 +210,11 @@ def _long_waves(branch, low):
     """A wavenumber <= low from which down, for a decade, growth is what it is as k -> 0: no crest lies lower."""
     k = _last_regime(branch.solver.flow, low)
     growth, power = _as_k_vanishes(branch, k)
+    finer = branch.solver.rough(_FINER)
     for _ in range(_DECADES):
         if not branch.reach(k / _DECADE):
             raise ModeLost(branch.why_lost(k / _DECADE))
-        nodes = [_heard(branch.solver, node) for part in branch.segments for node in part
-                 if k / _DECADE < node.k <= k]
+        nodes = [_heard(finer, node) for part in branch.segments for node in part if k / _DECADE < node.k <= k]
         if nodes and all(_FACTOR > node.growth_rate / growth(node.k) > 1 / _FACTOR and
                          abs(node.k * node.slope.real / node.growth_rate - power) < _CHANGE for node in nodes):
             return max(node.k for node in nodes)

@@ -3,7 +3,8 @@
     python tests/fuzz.py [--points N] [--flows NAME ...] [--seed S] [--truth N] [--commands N] [--processes N]
 
 Every point asks one question through the Python interface. It may be resolved, or refused by a StabilityError or by a
-status; anything else is a failure: another exception, a warning, output of a library, over `BUDGET` seconds of CPU.
+status; anything else is a failure: another exception, a warning, output of a library, over `BUDGET`
+seconds of CPU, or `SEARCH_BUDGET` for a search over a parameter.
 A sample of the resolved eigenvalues is compared with the multi-precision references: a true error above
 its bar is a failure. `--commands` asks through the command line, in this process, `--processes` in new ones that
 turn warnings into errors. Prints the counts and every failure; the exit status tells whether there were any.
@@ -38,6 +39,8 @@ from stability.flows import FLOWS
 from stability.neutral import critical
 
 BUDGET = 20.0  # seconds of CPU that a point may take
+SEARCHES = ("critical", "neutral")  # verbs that look over a whole range of a parameter, at each point
+SEARCH_BUDGET = 120.0  # for those
 REFERENCE_BUDGET = 10.0
 COMMANDS = "dispersion", "spectrum", "kmax", "critical", "neutral", "wellposed", "flows"
 REASONS = 40  # of refusals that are listed
@@ -258,6 +261,11 @@ def points(flow, count, seed):
         yield draw.point()
 
 
+def budget_of(line):
+    """What a command line may take."""
+    return SEARCH_BUDGET if any(verb in line for verb in SEARCHES) else BUDGET
+
+
 def truth(mode, budget=REFERENCE_BUDGET):
     """(kind, reason, true error over error bar) of a resolved mode against its multi-precision reference."""
     flow = mode.flow
@@ -470,7 +478,7 @@ def main():
         lines = []
         for question, number in (in_process, options.commands), (in_new_process, options.processes):
             for line in command_lines(number, options.seed):
-                outcome = attempt(shlex.join(line), lambda _, q=question, a=line: verdict(*q(a)), 5 * BUDGET)
+                outcome = attempt(shlex.join(line), lambda _, q=question, a=line: verdict(*q(a)), 5 * budget_of(line))
                 lines.append(outcome)
                 show(outcome)
 

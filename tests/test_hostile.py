@@ -35,7 +35,7 @@ def test_small_fuzz(flow):
 
 def test_small_fuzz_of_the_command_line():
     for line in fuzz.command_lines(30, SEED):
-        outcome = fuzz.attempt(line, lambda line: fuzz.verdict(*fuzz.in_process(line)))
+        outcome = fuzz.attempt(line, lambda line: fuzz.verdict(*fuzz.in_process(line)), fuzz.budget_of(line))
         assert not outcome.failed, (line, outcome.kind, outcome.reason)
 
 
