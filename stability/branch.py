@@ -47,6 +47,11 @@ class Branch:
         return tuple(sorted((one for walk in self._walks.values() for one in walk.collisions), key=lambda one: one.k))
 
     @property
+    def encounters(self):
+        """Where another mode nearly met this one so far, by rising k."""
+        return tuple(walk.encounter for walk in self._walks.values() if walk.encounter)[::-1]
+
+    @property
     def segments(self):
         """Lists of nodes by rising k, without a collision inside."""
         down, up = self._walks[-1].segments, self._walks[1].segments

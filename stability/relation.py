@@ -19,7 +19,7 @@ from .record import Record
 from .solver import DEGREES, TOLERANCE, Solver, check_accuracy
 from .status import INTERRUPTED, is_resolved, outgrown
 from .threads import one_thread
-from .tracking import Collision
+from .tracking import Collision, Encounter
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,14 +39,14 @@ class DispersionRelation(Eigenvalues, Record):
 
     `lost` maps wavenumbers at which the mode could not be followed to the reason (only with
     strict=False); they are left out of the arrays, not of the rows. `collisions` lists the mergers met on the
-    way, `asked` all wavenumbers in the order asked for.
+    way, and near ones, `asked` all wavenumbers in the order asked for.
     """
 
     flow: Any
     mode: str
     modes: tuple[Mode, ...]
     lost: dict[float, str] = field(hash=False)
-    collisions: tuple[Collision, ...]
+    collisions: tuple[Collision | Encounter, ...]
     asked: tuple[float, ...] = ()
     method: str = "collocation"
     settings: Mapping[str, Any] = field(default_factory=dict, compare=False)
@@ -190,11 +190,12 @@ def _followed(start, wavenumbers):
     except ModeLost as reason:
         yield {}, dict.fromkeys(wavenumbers.tolist(), str(reason)), ()
         return
-    told = 0
+    told = set()
     for first in range(0, len(wavenumbers), _PORTION):
         found, lost = branch.at(wavenumbers[first: first + _PORTION])
-        yield found, lost, branch.collisions[told:]
-        told = len(branch.collisions)
+        met = [event for event in (*branch.collisions, *branch.encounters) if event not in told]
+        told |= set(met)
+        yield found, lost, tuple(met)
 
 
 def leading_branch(solver):

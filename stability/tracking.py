@@ -17,6 +17,7 @@ from .solver import transfer
 _FIRST_STEP = 0.3  # in log k
 _LARGEST_STEP = 0.6
 _CLOSE = 0.02  # step below which a collision is looked for, and a rough walk goes on with full accuracy
+_NARROW = 5e-3  # step that tells of another mode near by
 _SMALLEST_STEP = 1e-8
 _PREDICTION = 0.05  # relative error of the predictor at which the step length is kept
 _BEND = 0.1  # largest departure of a step from the mean of its end slopes, relative
@@ -40,6 +41,18 @@ class Collision:
         outcome = "a complex pair (the one travelling downstream is followed)" if self.becomes == "pair" else \
             "two real modes (the less damped one is followed)"
         return f"two modes collide at k = {self.k:.6g}, sigma = {self.sigma:.6g}, and become {outcome}"
+
+
+@dataclass(frozen=True)
+class Encounter:
+    """Where two modes nearly meet: steps as short as `step`, in log k, are needed at k to tell which goes on."""
+
+    k: float
+    step: float
+
+    def __str__(self):
+        return (f"two modes nearly meet at k = {self.k:.6g}: which of them goes on is told by steps of {self.step:.1g} "
+                "relative, and may be the other at slightly different parameters")
 
 
 @dataclass(frozen=True)
@@ -107,6 +120,12 @@ class Walk:
             self._watch()
             self._advance(_rung(self.now.k, side * self.step))
 
+    @property
+    def encounter(self):
+        """Where the steps were shortest, an `Encounter`, if so short that another mode must have been near."""
+        step, k = self.shortest
+        return Encounter(k, step) if step < _NARROW else None
+
     def _watch(self):
         """Give up where the largest degree has not resolved the mode for long."""
         self._blind = 0 if self.solver.resolves(self.now) else self._blind + 1
@@ -130,12 +149,12 @@ class Walk:
             self.step = min(_LARGEST_STEP, max(length, self.step if length < self.step else 0) * factor)
             return
         self.step = length / 3
-        if self.step < self.shortest[0]:
-            self.shortest = self.step, self.now.k
+        known, self.shortest = self.shortest, min(self.shortest, (self.step, self.now.k))
         if self.step < _CLOSE and self.closer:
             self._look_closer()
             return
         if self.step < _CLOSE and self._cross(k):
+            self.shortest = known  # a collision is told as such
             return
         if self.step < _SMALLEST_STEP:
             raise self._lost(f"no mode overlaps its neighbour at k = {k:.6g}")

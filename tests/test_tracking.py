@@ -192,6 +192,13 @@ def test_a_sweep_loses_nothing_that_is_found_alone():
                           mu2=0.8238277485284187)
     alone, among = dispersion(flow, 2.498), dispersion(flow, [0.1, 2.498, 30.0], strict=False)
     assert abs(alone.sigma[0] - among.sigma[1]) <= alone.error[0] + among.error[1]
+    assert any("two modes nearly meet" in note for note in alone.notes())
+
+
+@pytest.mark.parametrize("flow", [flows.Dune(), flows.Vortex(Fr2=5.0), flows.Film(), flows.TwoLayerCouette()], ids=str)
+def test_where_nothing_is_near_nothing_is_said(flow):
+    """Collisions are told as such."""
+    assert not any("nearly meet" in note for note in dispersion(flow, [0.1, 1.0, 8.0]).notes())
 
 
 def random_flows(count, seed):
