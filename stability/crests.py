@@ -72,9 +72,9 @@ def default_mode(flow):
     return "surface" if ill_posed_somewhere(flow) else "leading"
 
 
-def search_of(flow):
+def search_of(flow, mode):
     """The range of k that is searched unless told otherwise: up to waves short beside the thinnest layer."""
-    if default_mode(flow) != "leading":
+    if mode != "leading":
         return SEARCH
     thinnest = min(float(layer.height(np.array(1.0))) for layer in flow.layers(numbers(flow)))
     return SEARCH[0], max(SEARCH[1], _SHORT / thinnest)

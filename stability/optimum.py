@@ -14,9 +14,9 @@ from .listing import listed
 from .output import Row
 from .record import Record
 from .solver import DEGREES, TOLERANCE, Assembly, Solver, check_accuracy
-from .status import STABLE, is_outgrown, is_resolved
+from .status import STABLE, is_outgrown, is_resolved, outgrown
 from .threads import one_thread
-from .wellposed import flag_outgrown, well_posedness
+from .wellposed import faster, well_posedness
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -137,12 +137,13 @@ class Optima(Record):
         return {**columns, "maxima_k": maxima[0], "maxima_growth_rate": maxima[1]} if most else columns
 
     def notes(self) -> list[str]:
-        faster = [optimum.flow for optimum in self.optima if is_outgrown(optimum.status)]
-        if not faster:
+        ahead = [optimum.flow for optimum in self.optima if is_outgrown(optimum.status)]
+        if not ahead:
             return []
-        where = f" at {len(faster)} of {len(self.optima)} values of {self.over}, first here" if self.over else ""
-        strips = "; ".join(map(str, well_posedness(faster[0]).strips))
-        return [naming(faster[0], f"an internal mode outgrows the surface mode at k_max{where}: {strips}")]
+        where = f" at {len(ahead)} of {len(self.optima)} values of {self.over}, first here" if self.over else ""
+        strips = "; ".join(map(str, well_posedness(ahead[0]).strips))
+        why = f": {strips}" if strips else ""
+        return [naming(ahead[0], f"an internal mode outgrows the surface mode at k_max{where}{why}")]
 
     def about(self) -> dict[str, Any]:
         return {"over": self.over} if self.over else {}
@@ -177,10 +178,6 @@ def k_max_sweep(flows: "Iterable[Flow]", search: tuple[float, float] | None = No
     tolerance, max_degree = check_accuracy(tolerance, max_degree)
     search = None if search is None else check_range(search, "search")
     mode = None if mode is None else check_options("mode", mode, MODES)
-    yield from flag_outgrown(_optima(flows, search, mode, tolerance, max_degree))
-
-
-def _optima(flows, search, mode, tolerance, max_degree):
     assembly = None
     for flow in flows:
         assembly = assembly.serving(flow) if assembly else Assembly(flow)
@@ -191,7 +188,7 @@ def _optima(flows, search, mode, tolerance, max_degree):
 def _optimum(solver, search, mode):
     if mode == "surface" and not solver.flow.has_surface_mode():
         solver.flow.long_wave(1.0)  # says so
-    low, high = search or search_of(solver.flow)
+    low, high = search or search_of(solver.flow, mode)
     settings = {"mode": mode, "tolerance": solver.tolerance, "max_degree": solver.degrees[-1]}
     if solver.flow.decays:
         return Optimum(solver.flow, (), _stable("leading", high), settings)
@@ -205,6 +202,8 @@ def _optimum(solver, search, mode):
     maxima = _distinct(sorted(inside, key=lambda one: -one.growth_rate))
     doubt = lost or (_outdone(solver, maxima[0]) if maxima and mode == "leading" else None)
     status = doubt or _status(solver, looks, found, maxima, mode, low, high)
+    if mode == "surface" and maxima and faster(solver, maxima[0].mode):
+        status = outgrown(status)
     return Optimum(solver.flow, tuple(maxima), status, settings)
 
 

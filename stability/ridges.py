@@ -91,7 +91,7 @@ class Landscape:
 
     def __init__(self, flow, vary, span, search, tolerance, max_degree):
         self.flow, self.vary, self.span = flow, vary, span
-        self.search = search or search_of(flow)
+        self.search = search or search_of(flow, default_mode(flow))
         halves = range(len(flow.halves()))
         self.planes = [Plane(flow, vary, tolerance, max_degree, half) for half in halves]
         self.rough = [plane.rough(ROUGH) for plane in self.planes]

@@ -5,7 +5,7 @@ converge: waves across the strip cannot be shorter than it is thick. Its interna
 and beyond some k no degree resolves them. The slow surface mode need not notice, but it is not what one would see.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any
 
@@ -16,7 +16,7 @@ from .dense import finite_rates
 from .relation import dispersion
 from .rheology import condition, ill_posed, short_wave_growth
 from .solver import DEGREES as RUNGS
-from .solver import Assembly, Solver
+from .solver import Solver
 from .spectra import Spectrum
 from .threads import one_thread
 
@@ -167,7 +167,7 @@ def outgrown(relation):
     below, above = -1, len(modes)
     middle = len(modes) - 1
     while above - below > 1:
-        rates[middle] = _faster(solver, modes[middle])
+        rates[middle] = faster(solver, modes[middle])
         below, above = (middle, above) if rates[middle] is None else (below, middle)
         middle = (below + above) // 2
     if above == len(modes):
@@ -176,30 +176,7 @@ def outgrown(relation):
     return Outgrown(modes[above].k, fine if abs(fine - coarse) < _SETTLED * abs(fine) else None, degrees, strips)
 
 
-def flag_outgrown(optima):
-    """Yield each `Optimum`, "; outgrown" added to its status where another mode grows faster at its k_max.
-
-    Well-posed flows are not searched. Flows with the same equations share their matrices, as in `k_max_sweep`.
-    """
-    known = None
-    for optimum in optima:
-        faster, known = _outgrown_at(optimum, known)
-        yield replace(optimum, status=status.outgrown(optimum.status)) if faster else optimum
-
-
-@one_thread
-def _outgrown_at(optimum, known):
-    """Whether another mode is faster, and (assembly, strips) to be used again."""
-    if not optimum.maxima:
-        return False, known
-    assembly = known[0].serving(optimum.flow) if known else Assembly(optimum.flow)
-    if not known or assembly is not known[0]:
-        known = assembly, well_posedness(optimum.flow).strips
-    solver = Solver(optimum.flow, assembly=assembly)
-    return bool(known[1]) and _faster(solver, optimum.best.mode) is not None, known
-
-
-def _faster(solver, mode):
+def faster(solver, mode):
     """Leading growth rates {degree: rate} at two degrees if both exceed that of this mode, else None.
 
     A degree that does not resolve the mode itself would miss its rivals.
