@@ -39,17 +39,18 @@ class DispersionRelation(Eigenvalues, Record):
 
     `lost` maps wavenumbers at which the mode could not be followed to the reason (only with
     strict=False); they are left out of the arrays, not of the rows. `collisions` lists the mergers met on the
-    way, and near ones, `asked` all wavenumbers in the order asked for.
+    way, `encounters` the near ones, `asked` all wavenumbers in the order asked for.
     """
 
     flow: Any
     mode: str
     modes: tuple[Mode, ...]
     lost: dict[float, str] = field(hash=False)
-    collisions: tuple[Collision | Encounter, ...]
+    collisions: tuple[Collision, ...]
     asked: tuple[float, ...] = ()
     method: str = "collocation"
     settings: Mapping[str, Any] = field(default_factory=dict, compare=False)
+    encounters: tuple[Encounter, ...] = ()
     dimension: ClassVar[str] = "k"
 
     @property
@@ -82,7 +83,8 @@ class DispersionRelation(Eigenvalues, Record):
         return columns
 
     def notes(self) -> list[str]:
-        notes = sorted({str(collision) for collision in self.collisions} | set(self.lost.values()) - {INTERRUPTED})
+        met = {str(event) for event in (*self.collisions, *self.encounters)}
+        notes = sorted(met | set(self.lost.values()) - {INTERRUPTED})
         return notes + [naming(self.flow, str(doubt)) for doubt in self._doubts]
 
     def about(self) -> dict[str, Any]:
@@ -150,8 +152,10 @@ def dispersion_parts(flow: "Flow", k: "ArrayLike", mode: str | None = None, *, t
     walk = {"surface": _surface, "leading": _leading, "most-unstable": _most_unstable}[mode]
     portions, step = walk(Solver(flow, tolerance, max_degree), np.unique(wavenumbers)), one_thread(next)
     while portion := step(portions, None):
-        found, lost, collisions = portion
-        yield DispersionRelation(flow, mode, tuple(found.values()), lost, tuple(collisions),
+        found, lost, met = portion
+        collisions = tuple(event for event in met if isinstance(event, Collision))
+        encounters = tuple(event for event in met if isinstance(event, Encounter))
+        yield DispersionRelation(flow, mode, tuple(found.values()), lost, collisions, encounters=encounters,
                                  settings={"tolerance": tolerance, "max_degree": max_degree})
 
 
@@ -162,8 +166,9 @@ def joined(parts: list[DispersionRelation], asked: list[float]) -> DispersionRel
     for part in parts:
         lost |= {k: reason for k, reason in part.lost.items() if k not in found and k not in lost}
     collisions = tuple(collision for part in parts for collision in part.collisions)
+    encounters = tuple(encounter for part in parts for encounter in part.encounters)
     return replace(parts[0], modes=tuple(found[k] for k in asked if k in found), lost=lost, collisions=collisions,
-                   asked=tuple(asked))
+                   encounters=encounters, asked=tuple(asked))
 
 
 def default_mode(flow: "Flow") -> str:
@@ -171,7 +176,7 @@ def default_mode(flow: "Flow") -> str:
     return "surface" if flow.has_surface_mode() else "leading"
 
 
-# Each walk yields ({k: mode}, {k: why it is lost}, collisions) of a few wavenumbers at a time.
+# Each walk yields ({k: mode}, {k: why it is lost}, collisions and encounters) of a few wavenumbers at a time.
 
 
 def _surface(solver, wavenumbers):

@@ -124,7 +124,8 @@ class Walk:
     def encounter(self):
         """Where the steps were shortest, an `Encounter`, if so short that another mode must have been near."""
         step, k = self.shortest
-        return Encounter(k, step) if step < _NARROW else None
+        collided = any(abs(log(one.k / k)) < _LARGEST_STEP for one in self.collisions)  # that is told as such
+        return Encounter(k, step) if step < _NARROW and not collided else None
 
     def _watch(self):
         """Give up where the largest degree has not resolved the mode for long."""
@@ -149,12 +150,11 @@ class Walk:
             self.step = min(_LARGEST_STEP, max(length, self.step if length < self.step else 0) * factor)
             return
         self.step = length / 3
-        known, self.shortest = self.shortest, min(self.shortest, (self.step, self.now.k))
+        self.shortest = min(self.shortest, (self.step, self.now.k))
         if self.step < _CLOSE and self.closer:
             self._look_closer()
             return
         if self.step < _CLOSE and self._cross(k):
-            self.shortest = known  # a collision is told as such
             return
         if self.step < _SMALLEST_STEP:
             raise self._lost(f"no mode overlaps its neighbour at k = {k:.6g}")
