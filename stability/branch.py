@@ -17,7 +17,7 @@ from .solver import transfer
 from .tracking import Walk
 
 _ROUGH = 1e-4  # tolerance of the walk; what is asked for is refined to full accuracy
-_FIRST, _FACTOR, _TRIES = 0.01, 5.0, 30  # wavenumbers at which the long-wave limit is sought: each a part of the last
+_FIRST, _FACTOR, _TRIES = 0.04, 5.0, 30  # wavenumbers at which the long-wave limit is sought: each a part of the last
 _AGREEMENT = 0.03  # of the surface mode with its long-wave limit, in value and in slope
 _CONFIRMED = 3  # wavenumbers in a row, each a part of the last, at which it must agree
 _NO_FARTHER = 1.5, 1e-3  # factor in its distance from the limit that each may have over the one before, and a floor
