@@ -15,7 +15,7 @@ from .crests import default_mode, depth_of
 from .critical import zero_at
 from .errors import ModeLost, ParameterError
 from .listing import near_neutral
-from .ridges import Landscape
+from .ridges import Landscape, may_turn
 
 _ARC = 0.25  # largest step in the logarithm of the parameter
 _SHORTEST = 1e-4
@@ -96,19 +96,11 @@ def _turns(plane, way):
     for a, b in pairwise(way):
         if a.growth * b.growth <= 0:
             yield a, b
-        elif _may_turn(a, b):
+        elif may_turn(a, b):
             middle = plane.move(a, a.k, (a.value * b.value) ** 0.5)
             if middle.growth * a.growth <= 0:
                 yield a, middle
                 yield middle, b
-
-
-def _may_turn(a, b):
-    """Whether growth of one sign at both ends may change it in between, by its tangents."""
-    h = log(b.value / a.value)
-    trends = [point.value * point.by_value.real for point in (a, b)]
-    nearest = a.growth + trends[0] * h / 2, b.growth - trends[1] * h / 2
-    return trends[0] * trends[1] < 0 and min(one * np.sign(a.growth) for one in nearest) < 0
 
 
 def _refined(plane, a, b):

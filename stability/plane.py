@@ -39,6 +39,11 @@ class Point:
         return complex(self.plane.derivative(self.value)(self.mode))
 
     @property
+    def trend(self):
+        """Derivative of the growth rate in the logarithm of the value."""
+        return self.value * self.by_value.real
+
+    @property
     def by_k(self):
         """Slope of the growth rate in log k."""
         return self.k * self.mode.slope.real

@@ -56,7 +56,7 @@ class Crest:
     @property
     def trend(self):
         """Derivative of the growth at the crest in the logarithm of the parameter."""
-        return self.value * self.point.by_value.real
+        return self.point.trend
 
 
 @dataclass(frozen=True)
