@@ -12,7 +12,8 @@ from math import copysign, log
 
 import numpy as np
 
-from .errors import ModeLost
+from .errors import ModeLost, ParameterError
+from .flows.sources import shipped
 from .solver import transfer
 from .tracking import Walk
 
@@ -21,6 +22,7 @@ _FIRST, _FACTOR, _TRIES = 0.04, 5.0, 30  # wavenumbers at which the long-wave li
 _AGREEMENT = 0.03  # of the surface mode with its long-wave limit, in value and in slope
 _CONFIRMED = 3  # wavenumbers in a row, each a part of the last, at which it must agree
 _NO_FARTHER = 1.5, 1e-3  # factor in its distance from the limit that each may have over the one before, and a floor
+_TENDS, _CLOSE = 0.5, 1e-3  # limit of the difference over that at the last of them where a law is wrong; its accuracy
 _FEW = 3  # wavenumbers that are refined one by one
 _MANY = 8  # wavenumbers between two nodes that are refined one by one
 _STRIDE = 2.0  # of n more than these every _STRIDE sqrt(n)-th becomes a node first
@@ -215,9 +217,30 @@ def surface_mode(solver, k=_FIRST):
             start, _, *law = agreeing[0]
             mode = solver.solve(start.k, start.rate, (start.degree, start.x, start.y))
             if _distance(mode, *law) < _AGREEMENT:
+                _check_law(solver.flow, agreeing)
                 return mode
             agreeing = []
+    if not shipped(type(solver.flow)):
+        raise ParameterError(f"{solver.flow.name}: long_wave contradicts the equations: no mode obeys it, in value and "
+                             f"slope, down to k = {k:.1e}")
     raise ModeLost(f"{solver.flow}: no mode obeys the long-wave limit down to k = {k:.1e}")
+
+
+def _check_law(flow, agreeing):
+    """Refuse a law, given by a flow from elsewhere, to which the mode does not tend.
+
+    Its relative difference from the law falls like a power of k, by the same factor from each wavenumber to the next:
+    what is left of it in the end follows from three of them.
+    """
+    if shipped(type(flow)):  # derived and proved
+        return
+    first, middle, last = (mode.sigma / limit - 1 for mode, _, limit, _ in agreeing)
+    bend = first + last - 2 * middle
+    left = (first * last - middle**2) / bend if abs(bend) > _CLOSE * abs(last) else last
+    if abs(left) > max(_TENDS * abs(last), _CLOSE):
+        mode, _, limit, _ = agreeing[-1]
+        raise ParameterError(f"{flow.name}: long_wave contradicts the equations: at k = {mode.k:.1e} it is "
+                             f"{limit:.6g}, the mode {mode.sigma:.6g}, and comes no closer as k falls")
 
 
 def _glance(solver, k, limit, exponent, above=None):

@@ -51,7 +51,7 @@ class Problem:
         """M0 and M1 of a layer at the points s, (2, 4, 4, points); their limits where an edge gives 0/0."""
         layer = self.layers[index]
         with np.errstate(divide="ignore", invalid="ignore"):
-            matrices = self._layer(layer, layer.profile(s), s)
+            matrices = self._layer(layer, layer.base(s), s)
         open_ = ~np.all(np.isfinite(matrices), axis=(0, 1, 2))
         if np.any(open_):
             matrices[..., open_] = self._series(index, 0).at(s[open_]).reshape(2, 4, 4, -1)

@@ -5,9 +5,11 @@ Exit status: 0 done and resolved; 2 bad usage or input; 3 computed, but unresolv
 
 import argparse
 import sys
+from importlib import import_module
 
 from . import __version__
 from .errors import ParameterError, StabilityError
+from .flows.sources import faults
 from .streams import drop_output, open_streams, say
 
 
@@ -15,7 +17,8 @@ def main(argv=None):
     """Run the command line; return the exit status."""
     open_streams()
     try:
-        return _run(argv)
+        with faults():
+            return _run(sys.argv[1:] if argv is None else [str(word) for word in argv])
     except ParameterError as reason:
         return _fail(reason, 2)
     except StabilityError as reason:
@@ -30,11 +33,11 @@ def main(argv=None):
         return _fail("interrupted", 130)
 
 
-def _run(argv):
-    from .verbs.common import nearest_flag  # half of the time of a short command: Ctrl-C is heard meanwhile
-
-    arguments, unknown = _parser().parse_known_args(argv)
+def _run(words):
+    arguments, unknown = _parser(words).parse_known_args(words)
     if unknown:
+        from .verbs.common import nearest_flag
+
         kind = "option" if unknown[0].startswith("-") else "argument"
         raise ParameterError(f"unknown {kind} {unknown[0]!r}{nearest_flag(arguments, unknown[0])}; "
                              "see --help, and for parameters: stability flows FLOW")
@@ -65,13 +68,19 @@ class _Parser(argparse.ArgumentParser):
         super().exit(status, message)
 
 
-def _parser():
+def _parser(words):
+    """The parser of the verb that is named, with the parameters of the flow that is named; of other verbs the name."""
     from .verbs import VERBS
 
     parser = _Parser(prog="stability", description="Linear stability of granular and viscous shear flows.",
                      epilog="example: stability dispersion dune --shields 2 --k 1e-2:10:50")
     parser.add_argument("--version", action="version", version=f"stability {__version__}")
     verbs = parser.add_subparsers(metavar="VERB", required=True, parser_class=_Parser)
-    for verb in VERBS:
-        verb.add(verbs)
+    named = next((word for word in words if not word.startswith("-")), None)
+    for verb, summary in VERBS.items():
+        if verb == named:
+            import_module(f".verbs.{verb}", __package__).add(verbs)
+            verbs.choices[verb].get_default("complete")(verbs.choices[verb], words[words.index(verb) + 1:])
+        else:
+            verbs.add_parser(verb, help=summary, add_help=False)
     return parser

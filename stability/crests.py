@@ -136,7 +136,7 @@ def depth_of(flow):
     where that is less: no wave speed changes by more within a step.
     """
     points = chebyshev.points(_POINTS)
-    bases = [layer.profile(points) for layer in flow.layers(numbers(flow)) if not layer.steady]
+    bases = [layer.base(points) for layer in flow.layers(numbers(flow)) if not layer.steady]
     speed = float(np.ptp(np.concatenate([np.broadcast_to(base.U, points.shape) for base in bases]))) or 1.0
     viscosity = min(float(np.mean(base.beta / base.rho)) for base in bases)
     return lambda k: speed * min(_DEPTH, (viscosity / (k * speed)) ** (1 / 3))

@@ -12,10 +12,10 @@ import numpy as np
 
 from .branch import surface_branch
 from .crests import default_mode, depth_of
-from .critical import zero_at
 from .errors import ModeLost, ParameterError
 from .listing import near_neutral
 from .ridges import Landscape, may_turn
+from .thresholds import zero_at
 
 _ARC = 0.25  # largest step in the logarithm of the parameter
 _SHORTEST = 1e-4

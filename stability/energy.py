@@ -47,7 +47,7 @@ def energy(solver, k, degree):
         if layer.steady:
             continue
         nodes, weights = _gauss(degree, resolved(flow, layers, index, _densities).length)
-        base = layer.profile(nodes)
+        base = layer.base(nodes)
         root = np.sqrt(weights * np.abs(base.stress * base.rho * base.dz))
         values = chebyshev.at(nodes, degree)
         for field, row, size in (("v", "along", stretch * base.g), ("w", "across", width)):

@@ -29,7 +29,7 @@ class NotSmooth(ParameterError):
         return f"{self.where}: {self.complaint}{place}: {self.remedy}"
 
 
-class ConditionCount(StabilityError):
+class ConditionCount(ParameterError):
     """The conditions of a flow do not match the order of its layers."""
 
 

@@ -42,6 +42,8 @@ class Form:
         return self * (1 / number)
 
     def __pow__(self, power):
+        if not isinstance(power, int) or power < 0:
+            raise TypeError(f"a power of a symbol must be 0, 1, 2 ... (got {power!r})")
         product = Form({(): 1.0})
         for _ in range(power):
             product = product * self

@@ -22,13 +22,14 @@ Without convection (U = 0, alpha = 0) all coefficients are real.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev as C
 
+from .chebyshev import points
 from .errors import NotSmooth
 from .forms import Form
 from .smooth import Fit, Rough, fit
@@ -36,6 +37,9 @@ from .smooth import Fit, Rough, fit
 FIELDS = ("v", "w", "t", "n")
 
 _NUMBERS = "the values of a profile must be finite real numbers, one for all points or one for each"
+_EPS = np.finfo(float).eps
+_NOISE = 64 * _EPS  # disagreement of a series with its function that is rounding
+_HEIGHTS = 64  # at least, at which the effect of uncertain slopes is looked at
 _SMOOTHEN = ("take a smooth profile, without kink, step or noise, or divide the layer there (a feature thinner than "
              "1/500 of its layer counts as a kink)")
 
@@ -44,8 +48,9 @@ _SMOOTHEN = ("take a smooth profile, without kink, step or noise, or divide the 
 class Profile:
     """Base flow at the points s of a layer: arrays of the shape of s, or numbers.
 
-    `dz` is the slope dz/ds of the map from 0 <= s <= 1 to the layer; `dg` is dg/ds. The shear-rate
-    equation is multiplied by `clear`, so that its coefficients become polynomials and its matrix banded.
+    `dz` is the slope dz/ds of the map from 0 <= s <= 1 to the layer. The slopes `dU`, in z, and `dg`, in s, follow
+    from the series of U and g unless they are given. The shear-rate equation is multiplied by `clear`, so that its
+    coefficients become polynomials and its matrix banded.
     `rho`, `eta`, `beta` and the unknown stresses are in units of `stress`: viscous flows measure them by their
     viscosity, or else all stresses would be enormous beside the velocities at small Re.
     """
@@ -55,12 +60,20 @@ class Profile:
     beta: Any
     rho: Any = 1.0
     U: Any = 0.0
-    dU: Any = 0.0
+    dU: Any = None
     alpha: Any = 0.0
     g: Any = 1.0
-    dg: Any = 0.0
+    dg: Any = None
     clear: Any = 1.0
     stress: Any = 1.0
+
+    def __post_init__(self) -> None:
+        for slope, name in _SLOPES.items():
+            if getattr(self, slope) is None and isinstance(getattr(self, name), int | float):
+                object.__setattr__(self, slope, 0.0)
+
+
+_SLOPES = {"dU": "U", "dg": "g"}
 
 
 @dataclass(frozen=True)
@@ -89,14 +102,67 @@ class Layer:
             raise NotSmooth(f"layer {self.name}", f"dz is not smooth near s = {rough.s:.4g}", None, _SMOOTHEN) from None
         return C.chebint(slope.series[0], lbnd=-1) / 2
 
+    def base(self, s: np.ndarray) -> Profile:
+        """Return the profile at the points s (points,), with the slopes that follow from its series.
+
+        Raises NotSmooth where a series that is needed does not end.
+        """
+        return self._completed(self.profile(s), s)[0]
+
+    def slope(self, name: str, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the derivative in s of U or g at the points s, and a bound on its error, (points,) each.
+
+        The series is an exact polynomial, and so is its slope: the flow of this polynomial is what is solved. Its
+        error is what the series has left out, and rounding, times the steepest slope of its last term at that point.
+        """
+        series, cut, largest = self._series[name]
+        degree = len(series) - 1
+        steepest = np.minimum(degree / np.sqrt(np.maximum(s * (1 - s), _EPS)), 2.0 * degree**2)
+        return 2 * C.chebval(2 * s - 1, C.chebder(series)), (cut + _NOISE * largest) * steepest
+
+    @cached_property
+    def _series(self) -> dict[str, tuple[np.ndarray, float, float]]:
+        """Series of U and g, what they leave out at most, and their size; only of those that are no Forms."""
+        found = {}
+        for name in _SLOPES.values():
+            try:
+                one = fit(lambda s, name=name: np.broadcast_to(
+                    np.asarray(getattr(self._checked(s), name), dtype=float), (1, len(s))))
+            except Rough as rough:
+                raise self._refusal(f"{name} is not smooth", rough.s, _SMOOTHEN) from None
+            found[name] = one.series[0], float(one.cut[0]), float(np.abs(one.series[0]).max())
+        return found
+
+    def _completed(self, base, s):
+        """The profile with its slopes, and the uncertainty of those that had to be found, {name: (points,)}.
+
+        What a series leaves out is noise: in the equations its slope acts like its last term would, without the steep
+        ends of the latter, since the error of U' w integrates to that of U times the slope of w.
+        """
+        missing = [slope for slope in _SLOPES if getattr(base, slope) is None]
+        if not missing:
+            return base, {}
+        if any(isinstance(getattr(base, name), Form) for name in ("dz", *(_SLOPES[slope] for slope in missing))):
+            raise self._refusal(f"{missing[0]} must be given where heights depend on k")
+        found = {slope: self.slope(_SLOPES[slope], s) for slope in missing}
+        with np.errstate(divide="ignore", invalid="ignore"):
+            scale = {"dU": 1 / np.asarray(base.dz), "dg": np.ones(1)}
+            values = {name: value * scale[name] for name, (value, _) in found.items()}
+        noise = {name: cut * len(series) * np.abs(scale[name]) for name in missing
+                 for series, cut, _ in (self._series[_SLOPES[name]],) if cut}
+        return replace(base, **values), noise
+
     def resolved(self, coefficients: Callable[..., Any], together: bool = False) -> Fit:
         """Return the series of `coefficients(base, s)`, a list of arrays (points,) or numbers made of the profile at s.
 
         They are sampled until they have ended, as `smooth.fit` does. Raises NotSmooth where they do not, and where a
         value of the profile is not a finite real number.
         """
-        def sample(s):
-            base = self._checked(s)
+        uncertain: dict[str, Any] = {}
+
+        def sample(s, off=None):
+            base, bounds = (off, {}) if off else self._completed(self._checked(s), s)
+            uncertain.update(bounds)
             with np.errstate(divide="ignore", invalid="ignore"):
                 given = coefficients(base, s)
             values = np.empty((len(given), len(s)), np.result_type(*given))
@@ -106,17 +172,28 @@ class Layer:
             return values
 
         try:
-            return fit(sample, together)
+            found = fit(sample, together)
         except Rough as rough:
             name, s = self._culprit(rough.s)
             raise self._refusal(f"{name} not smooth", s, _SMOOTHEN) from None
+        return self._widened(found, sample) if uncertain else found
+
+    def _widened(self, found, sample):
+        """The fit, with what the uncertainty of slopes that had to be found adds to what it leaves out."""
+        s = points(max(found.length, _HEIGHTS))
+        base, uncertain = self._completed(self.profile(s), s)
+        cut = found.cut
+        for name, bound in uncertain.items():
+            off = replace(base, **{name: getattr(base, name) + bound})
+            cut = cut + np.abs(sample(s, off) - sample(s, base)).max(axis=1)
+        return replace(found, cut=cut)
 
     def _checked(self, s):
         """The profile at the points s, all of whose values are numbers or have the shape of s, real and finite."""
         base = self.profile(s)
         for name in _NAMES:
             value = getattr(base, name)
-            if type(value) is float and abs(value) < np.inf:  # most are
+            if value is None and name in _SLOPES or type(value) is float and abs(value) < np.inf:  # most are
                 continue
             for one in value.terms.values() if isinstance(value, Form) else (value,):
                 number = np.asarray(one)
@@ -134,10 +211,10 @@ class Layer:
     def _culprit(self, s):
         """Which field of the profile does not end, in words, and where; of several that do not, the first."""
         for name in _NAMES:
-            if isinstance(getattr(self.profile(np.array([s])), name), Form):
+            if isinstance(getattr(self.base(np.array([s])), name), Form):
                 continue
             try:
-                fit(lambda at, name=name: np.broadcast_to(getattr(self.profile(at), name), (1, len(at))))
+                fit(lambda at, name=name: np.broadcast_to(getattr(self.base(at), name), (1, len(at))))
             except Rough as rough:
                 return f"{name} is", rough.s
         return "the coefficients of the equations are", s

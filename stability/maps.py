@@ -19,6 +19,7 @@ from . import status
 from .checks import check_file_name, check_integer, check_options, check_wavenumbers, flat, shown
 from .errors import ParameterError, StabilityError, WorkersLost
 from .flows.base import check_flow, check_parameter
+from .flows.sources import faults, origin
 from .journal import Journal
 from .neutral import check_parameter_name, critical_sweep
 from .optimum import k_max_sweep
@@ -142,7 +143,7 @@ class Request:
         from . import __version__
 
         fixed = {item.name: getattr(self.flow, item.name) for item in fields(self.flow) if item.name not in self.over}
-        return {"version": __version__, "flow": self.flow.name, "parameters": fixed,
+        return {"version": __version__, "flow": self.flow.name, **origin(type(self.flow)), "parameters": fixed,
                 "over": [[name, list(values)] for name, values in self.over.items()], "quantity": self.quantity,
                 "k": self.k and list(self.k), "vary": self.vary, "tolerance": self.tolerance,
                 "max_degree": self.max_degree}
@@ -400,7 +401,8 @@ def compute(piece, attempt=0):
 
     `attempt` does nothing: it tells an engine that remembers calls by their arguments that this is another one.
     """
-    return [list(row) for row in _ROWS[piece.quantity](piece)]
+    with faults():
+        return [list(row) for row in _ROWS[piece.quantity](piece)]
 
 
 def _k_max_rows(piece):

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from .checks import check_flag, check_range, check_wavenumbers, shown
-from .critical import critical_zeros
 from .crossings import zeros_at
 from .errors import ModeLost, NotResolved, ParameterError, naming
 from .flows.base import check_flow, span_of
@@ -24,6 +23,7 @@ from .ridges import Landscape
 from .solver import DEGREES, TOLERANCE, check_accuracy
 from .status import inside, is_resolved
 from .threads import one_thread
+from .thresholds import critical_zeros
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

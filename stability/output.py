@@ -18,6 +18,7 @@ from typing import Any
 from . import __version__
 from .checks import check_file_name
 from .errors import ParameterError
+from .flows.sources import origin
 from .status import RESOLVED
 
 Row = dict[str, Any]
@@ -33,7 +34,8 @@ def header_of(flow: Any, method: str, about: dict[str, Any], notes: Sequence[str
               swept: Collection[str | None] = ()) -> dict[str, Any]:
     """What belongs to a whole result: flow, parameters but the swept ones, method, version, `about`, notes if any."""
     parameters = {item.name: getattr(flow, item.name) for item in fields(flow) if item.name not in swept}
-    header = {"flow": flow.name, "parameters": parameters, "method": method, "version": __version__, **about}
+    header = {"flow": flow.name, "parameters": parameters, "method": method, "version": __version__,
+              **origin(type(flow)), **about}
     return {**header, "notes": list(notes)} if notes else header
 
 

@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from .checks import check_integer, check_tolerance
+from .flows.base import check_flow
 from .mode import Mode
 from .pencil import Pencil
 from .refine import refine, refine_many
@@ -61,7 +62,7 @@ class Solver:
     """
 
     def __init__(self, flow, tolerance=TOLERANCE, max_degree=DEGREES[-1], assembly=None, bars=True):
-        self.flow = flow
+        self.flow = check_flow(flow)
         self.bars = bars
         self.tolerance = tolerance
         self.truncation = 0.5 * tolerance if tolerance > TOLERANCE else min(0.5 * tolerance, _FAR_BELOW)

@@ -9,8 +9,9 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from .errors import ConditionCount
-from .forms import symbol
+from .checks import shown
+from .errors import ConditionCount, ParameterError
+from .forms import Form, symbol
 from .layer import FIELDS, residuals, resolved
 
 _EQUATIONS = ("shear rate", "continuity", "momentum along", "momentum across")
@@ -41,7 +42,9 @@ class System:
         self.equations = tuple(equation for index in range(len(layers))
                                for equation in self._equations(flow, layers, index, names))
         edges = SimpleNamespace(**{layer.name: tuple(_edge(layer, end) for end in (0, 1)) for layer in layers})
-        self.conditions = tuple(self._terms(form) for form in flow.conditions(edges, names))
+        given = flow.conditions(edges, names)
+        _check_conditions(flow, given)
+        self.conditions = tuple(self._terms(form) for form in given)
         self.dynamic_layers = sum(not layer.steady for layer in layers)
         _check_count(flow, layers, len(self.conditions))
 
@@ -91,8 +94,9 @@ class System:
         """The one unknown among the names of a product, and the monomial of the others."""
         all_ = self.fields + self.surfaces
         unknowns = [name for name in names if name.rstrip("'").partition("@")[0] in all_]
-        if len(unknowns) != 1:
-            raise ValueError(f"an equation must be linear in the unknowns: got {'*'.join(names) or 'a constant'}")
+        if len(unknowns) != 1 or names.count("rate") > 1:
+            raise ParameterError("equations and conditions must be linear in the unknowns and in the rate: got "
+                                 f"{'*'.join(names) or 'a constant'}")
         return unknowns[0], tuple(name for name in names if name != unknowns[0])
 
 
@@ -115,6 +119,31 @@ def _edge(layer, end):
 def _series(number):
     """A number as a series of one term; real if it is real."""
     return np.array([number if number.imag else number.real])
+
+
+def _check_conditions(flow, given):
+    """Conditions are different forms with finite coefficients; their numbers in messages count from 1."""
+    if not isinstance(given, tuple | list):
+        raise ParameterError(f"{flow.name}: conditions(edges, names) must return a tuple (got {shown(given)})")
+    for number, form in enumerate(given, 1):
+        if not isinstance(form, Form) or not any(form.terms.values()):
+            raise ParameterError(f"{flow.name}: condition {number} has no unknown: it is to be a sum such as "
+                                 f"edge.v + names.k * edge.w, that is 0 (got {shown(getattr(form, 'terms', form))})")
+        for names, coefficient in form.terms.items():
+            if np.shape(coefficient) or not np.isfinite(coefficient):
+                raise ParameterError(f"{flow.name}: condition {number}: the coefficient of {'*'.join(names)} must be a "
+                                     f"finite number (got {shown(coefficient)})")
+        for other in range(1, number):
+            if _proportional(given[other - 1].terms, form.terms):
+                raise ParameterError(f"{flow.name}: conditions {other} and {number} say the same")
+
+
+def _proportional(one, other):
+    one, other = ({names: value for names, value in terms.items() if value} for terms in (one, other))
+    if one.keys() != other.keys():
+        return False
+    ratios = [complex(other[names] / value) for names, value in one.items()]
+    return all(abs(ratio - ratios[0]) <= 1e-12 * abs(ratios[0]) for ratio in ratios)
 
 
 def _check_count(flow, layers, given):

@@ -205,7 +205,7 @@ def _coefficients(layer, s):
     with np.errstate(divide="ignore", invalid="ignore"):
         at, inside = (np.array([np.broadcast_to(value, s.shape)
                                 for value in (base.beta / base.eta, base.alpha, base.eta, base.rho)], dtype=float)
-                      for base in (layer.profile(s), layer.profile(np.clip(s, _INSIDE, 1 - _INSIDE))))
+                      for base in (layer.base(s), layer.base(np.clip(s, _INSIDE, 1 - _INSIDE))))
     return np.where(np.isnan(at), inside, at)
 
 

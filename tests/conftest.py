@@ -10,7 +10,7 @@ import time
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 signal.signal(signal.SIGINT, signal.default_int_handler)
-SEED = int(os.environ.get("STABILITY_TEST_SEED", time.time_ns() % 10**6))
+SEED = int(os.environ.setdefault("STABILITY_TEST_SEED", str(time.time_ns() % 10**6)))  # the same in all processes
 
 
 def pytest_report_header():

@@ -1,7 +1,7 @@
 """Base flows that are no polynomials: series that end, error bars that hold, and profiles that are refused."""
 
 import pickle
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from typing import Any, ClassVar
 
@@ -33,10 +33,10 @@ DEGREES = (24, 32, 48, 64, 96, 128, 192)
 
 @dataclass(frozen=True)
 class _Given(ShearLayer):
-    """The shear layer between lids at +-10 with other coefficients: `given` maps z to fields of the profile."""
+    """The shear layer between lids at +-10 with other coefficients: `changes` maps z to fields of the profile."""
 
     name: ClassVar[str] = "given"
-    given: Any = None
+    changes: Any = field(default=None, metadata={"meaning": "no number"})
 
     def __post_init__(self):
         pass
@@ -46,14 +46,14 @@ class _Given(ShearLayer):
             z = self.low + (self.high - self.low) * s
             U, dU, _ = self.shape(z)
             values = {"dz": self.high - self.low, "U": U, "dU": dU, "eta": 1 / self.Re, "beta": 1 / self.Re}
-            return Profile(**values | self.given(z))
+            return Profile(**values | self.changes(z))
 
         return (Layer("fluid", profile),)
 
 
 def given(**fields):
     """A flow whose profile has these fields, numbers or functions of z."""
-    return _Given(given=lambda z: {name: one(z) if callable(one) else one for name, one in fields.items()})
+    return _Given(changes=lambda z: {name: one(z) if callable(one) else one for name, one in fields.items()})
 
 
 def solved(flow, k, c, degree):
@@ -342,7 +342,7 @@ def test_heights_of_an_upper_layer_are_those_in_the_flow(monkeypatch):
 
 
 def test_a_height_that_depends_on_a_symbol_is_given_in_the_layer():
-    layer = Layer("fluid", lambda s: Profile(dz=symbol("H"), U=np.abs(s - 0.5), eta=1.0, beta=1.0))
+    layer = Layer("fluid", lambda s: Profile(dz=symbol("H"), U=np.abs(s - 0.5), dU=0.0, eta=1.0, beta=1.0))
     with pytest.raises(NotSmooth, match=r"layer fluid: U is not smooth near s = 0\.[45]"):
         layer.resolved(lambda base, s: [base.U])
 

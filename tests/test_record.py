@@ -98,6 +98,9 @@ class BytesPath:
     def __fspath__(self):
         return b"x"
 
+    def __repr__(self):
+        return "BytesPath()"
+
 
 @pytest.mark.parametrize("path", [None, b"x.csv", 5, ["x"], "", "a\0b", "\ud800", BytesPath(), 1.5, True], ids=repr)
 @pytest.mark.parametrize("method", ["to_csv", "to_json", "to_netcdf"])

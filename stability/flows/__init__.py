@@ -1,14 +1,40 @@
-"""The flows, by name."""
+"""The flows, by name, and all that a flow of one's own is written with.
 
-from .base import Flow
-from .couette import Couette
-from .dune import Dune
-from .film import Film
-from .poiseuille import Poiseuille
-from .rollwave import RollWave
-from .two_layer_couette import TwoLayerCouette
-from .vortex import Vortex
+    from stability.flows import Flow, Layer, Profile, choice, parameter
+"""
 
-FLOWS = {flow.name: flow for flow in (Vortex, Dune, RollWave, Film, TwoLayerCouette, Poiseuille, Couette)}
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
-__all__ = ["FLOWS", "Couette", "Dune", "Film", "Flow", "Poiseuille", "RollWave", "TwoLayerCouette", "Vortex"]
+from .catalogue import FLOWS, find, register
+
+if TYPE_CHECKING:
+    from ..layer import Layer, Profile
+    from .base import Flow, choice, parameter
+    from .couette import Couette
+    from .dune import Dune
+    from .film import Film
+    from .poiseuille import Poiseuille
+    from .rollwave import RollWave
+    from .two_layer_couette import TwoLayerCouette
+    from .vortex import Vortex
+
+__all__ = ["FLOWS", "Couette", "Dune", "Film", "Flow", "Layer", "Poiseuille", "Profile", "RollWave", "TwoLayerCouette",
+           "Vortex", "choice", "find", "parameter", "register"]
+
+_LATER = {
+    "Couette": ".couette", "Dune": ".dune", "Film": ".film", "Flow": ".base", "Layer": "..layer",
+    "Poiseuille": ".poiseuille", "Profile": "..layer", "RollWave": ".rollwave",
+    "TwoLayerCouette": ".two_layer_couette", "Vortex": ".vortex", "choice": ".base", "parameter": ".base",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import what is asked for: the command line knows the names of the flows before it needs any numerics."""
+    if name not in _LATER:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_LATER[name], __name__), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

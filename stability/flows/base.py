@@ -6,6 +6,8 @@ from typing import Any, ClassVar
 
 from ..checks import LARGEST, as_number, check_options, in_double_precision, shown
 from ..errors import ParameterError
+from . import sources
+from .contract import check_body, check_class, verify
 
 _INSET, _AROUND = 1e-3, 100.0  # of a bounded range left out at its ends; factor about the default of an unbounded one
 
@@ -35,8 +37,8 @@ class Flow:
     """
 
     name: ClassVar[str]
-    title: ClassVar[str]
-    scales: ClassVar[str]
+    title: ClassVar[str] = "no title"
+    scales: ClassVar[str] = "those of its base flow"
     order: ClassVar[int] = 0  # sigma = k^(1 + order) * rate
     surfaces: ClassVar[tuple[str, ...]] = ()
     functions: ClassVar[tuple[str, ...]] = ()
@@ -45,10 +47,22 @@ class Flow:
     decays: ClassVar[bool] = False  # whether it is known that all modes of all such flows decay
     reflection: ClassVar[int] = 0  # of w in the lowest edge, 1 even or -1 odd, where that is a line of symmetry
 
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        sources.note(cls)
+        check_body(cls)
+
     def __post_init__(self) -> None:
+        if not sources.shipped(type(self)):
+            check_class(type(self))
         for item in fields(self):
             value = check_parameter(self.name, item, getattr(self, item.name))
             object.__setattr__(self, item.name, value)
+
+    def __reduce__(self) -> Any:
+        """Pickle a flow by its parameters; a class from a file is found again by the file."""
+        values = {item.name: getattr(self, item.name) for item in fields(self)}
+        return sources.revive, (sources.ticket(type(self)), values)
 
     def evaluate(self, k: Any) -> dict[str, tuple[Any, Any, Any]]:
         """Return {name: (value, slope in k, absolute error)} of the functions of k, arrays like k."""
@@ -69,10 +83,12 @@ class Flow:
 
 
 def check_flow(flow):
-    """Return the flow, or raise a ParameterError where it is something else."""
+    """Return the flow, or raise a ParameterError where it is something else or its base flow contradicts itself."""
     if not isinstance(flow, Flow):
         hint = f"; did you mean {flow.__name__}()?" if isinstance(flow, type) and issubclass(flow, Flow) else ""
         raise ParameterError(f"flow must be an object of a class in stability.flows{hint} (got {shown(flow)})")
+    if not sources.shipped(type(flow)):
+        verify(flow)
     return flow
 
 

@@ -3,17 +3,18 @@
 import argparse
 import os
 from dataclasses import fields, replace
-from difflib import get_close_matches
 from pathlib import Path
 
 from ..errors import ParameterError
-from ..flows import FLOWS
-from ..flows.base import allowed
+from ..flows import FLOWS, find
+from ..flows.base import allowed, check_flow
+from ..flows.catalogue import nearest
 from ..output import check_writable, render, terminal_width, whole_file, write
 from ..solver import DEGREES, TOLERANCE, check_accuracy
 from ..specs import parse_spec
 from ..status import INTERRUPTED, is_settled
 from ..streams import output_closed, say
+from . import VERBS
 from .progress import Bar
 
 SPEC = "a number, a list a,b,c, or a range a:b:n (log-spaced) or a:b:n:lin"
@@ -27,16 +28,18 @@ _FOREIGN = {  # endings of forms that we do not write: a table under such a name
     ".zip", ".gz", ".bz2", ".xz", ".zst", ".tar",
 }
 _PLOTS = (".png", ".pdf", ".svg")
+FLOW = f"one of {', '.join(FLOWS)}, or your own: path/to/file.py:Class or package.module:Class"
 _NUMBER = "V"  # metavar of a numeric parameter of a flow
 _JOIN = "join values with commas"
 _REMEDIES = {"SPEC": _JOIN, "NAME=SPEC": f"{_JOIN}, and sweep several parameters with: stability map"}  # by metavar
 
 
-def add_verb(verbs, name, run, summary, example, *options):
+def add_verb(verbs, name, run, example, *options):
     """Add a verb that takes a flow, its parameters, the common options and whatever `options` add."""
+    summary = VERBS[name]
     verb = verbs.add_parser(name, help=summary, description=summary[0].upper() + summary[1:] + ".",
                             epilog=f"example: {example}", add_help=False)
-    verb.add_argument("flow", metavar="FLOW", help=f"one of {', '.join(FLOWS)}")
+    verb.add_argument("flow", metavar="FLOW", help=FLOW)
     for option in options:
         option(verb)
     form = verb.add_mutually_exclusive_group()
@@ -46,26 +49,8 @@ def add_verb(verbs, name, run, summary, example, *options):
                       help="write there instead of standard output; .csv, .json and .nc (netCDF) in that form")
     verb.add_argument("--plot", metavar="FILE", help="draw the result: .png, .pdf or .svg")
     verb.add_argument("--quiet", action="store_true", help="no progress and no warnings on standard error")
-    verb.add_argument("-h", "--help", action=_Help, help="show this help and exit")
-    verb.set_defaults(run=run, form="table", parameters=_add_parameters(verb))
-
-
-class _Help(argparse.Action):
-    """Print the help of a verb, with the parameters of the flow that has been named before, if any."""
-
-    def __init__(self, option_strings, dest, help):
-        super().__init__(option_strings, argparse.SUPPRESS, nargs=0, default=argparse.SUPPRESS, help=help)
-
-    def __call__(self, parser, namespace, values, option_string=None):
-        flow, group = FLOWS.get(namespace.flow), namespace.parameters
-        if flow:
-            texts = {flag(item): f"{item.metadata['meaning']}; {allowed(item.metadata)}, default {item.default}"
-                     for item in fields(flow)}
-            group.title, group.description = f"parameters of {flow.name}", flow.title
-            for action in group._group_actions:
-                action.help = texts.get(action.option_strings[0], argparse.SUPPRESS)
-        parser.print_help()
-        parser.exit()
+    verb.add_argument("-h", "--help", action="help", help="show this help and exit")
+    verb.set_defaults(run=run, form="table", complete=_add_parameters)
 
 
 class Once(argparse.Action):
@@ -85,14 +70,35 @@ class Once(argparse.Action):
         return _REMEDIES.get(str(self.metavar), "give it once")
 
 
-def _add_parameters(verb):
-    """Add a flag for every parameter of every flow, and return their group; `_Help` shows those of one flow."""
-    group = verb.add_argument_group("parameters of the flow", f"listed by: {verb.prog} FLOW --help")
-    for name, item in {item.name: item for flow in FLOWS.values() for item in fields(flow)}.items():
-        for spelling in dict.fromkeys((flag(item), f"--{name}")):
-            group.add_argument(spelling, dest=f"parameter {name}", help=argparse.SUPPRESS,
-                               metavar="NAME" if "options" in item.metadata else _NUMBER)
-    return group
+def _add_parameters(verb, words):
+    """Add a flag for every parameter of the flow that the words name."""
+    name = _flow_named(verb, words)
+    if name is None:
+        verb.add_argument_group("parameters of the flow", f"listed by: {verb.prog} FLOW --help")
+        return
+    flow = find(name)
+    group = verb.add_argument_group(f"parameters of {flow.name}", flow.title)
+    for item in fields(flow):
+        text = f"{item.metadata['meaning']}; {allowed(item.metadata)}, default {item.default}".replace("%", "%%")
+        metavar = "NAME" if "options" in item.metadata else _NUMBER
+        for spelling in dict.fromkeys((flag(item), f"--{item.name}")):
+            group.add_argument(spelling, dest=f"parameter {item.name}", metavar=metavar,
+                               help=text if spelling == flag(item) else argparse.SUPPRESS)
+
+
+def _flow_named(verb, words):
+    """The first of the words that is no option and no value of one; an option that is unknown yet takes a value."""
+    value_follows = False
+    for word in words:
+        if value_follows:
+            value_follows = False
+        elif not word.startswith("-") or word == "-":
+            return word
+        else:
+            option = verb._option_string_actions.get(word)
+            long = word.startswith("--") and "=" not in word
+            value_follows = option.nargs != 0 if option else long
+    return None
 
 
 def flag(item):
@@ -102,8 +108,11 @@ def flag(item):
 
 def nearest_flag(arguments, unknown):
     """A hint at the parameter that an unknown option may stand for."""
-    flow = FLOWS.get(getattr(arguments, "flow", ""))
-    return _nearest(unknown.partition("=")[0], [flag(item) for item in fields(flow)] if flow else ())
+    if not getattr(arguments, "flow", None):
+        return ""
+    flow = find(arguments.flow)
+    flags = [flag(item) for item in fields(flow)]
+    return nearest(unknown.partition("=")[0], flags) or f"; {flow.name} has {', '.join(flags) or 'no parameters'}"
 
 
 def k_option(verb):
@@ -117,22 +126,12 @@ def accuracy_options(verb):
     verb.add_argument("--max-degree", metavar="N", default=str(DEGREES[-1]), help="largest Chebyshev degree tried")
 
 
-def flow_class(name):
-    if name not in FLOWS:
-        raise ParameterError(f"unknown flow {name!r}{_nearest(name, FLOWS)}; flows: {', '.join(FLOWS)}")
-    return FLOWS[name]
-
-
 def flow_of(arguments):
     """The flow with the parameters given as flags."""
-    flow = flow_class(arguments.flow)
-    known = {item.name for item in fields(flow)}
     given = {key.partition(" ")[2]: value for key, value in vars(arguments).items()
              if key.startswith("parameter ") and value is not None}
-    for name in given:
-        if name not in known:
-            raise ParameterError(f"{flow.name} has no parameter {name}; it has {', '.join(sorted(known))}")
-    return flow(**given)
+    flow = find(arguments.flow)(**given)
+    return check_flow(flow)
 
 
 def sweep_of(arguments, flow):
@@ -149,7 +148,7 @@ def swept_values(text, flow):
     name = name.replace("-", "_")
     known = [item.name for item in fields(flow) if "options" not in item.metadata]
     if name not in known:
-        raise ParameterError(f"--over: {flow.name} has no parameter {name!r}{_nearest(name, known)}; "
+        raise ParameterError(f"--over: {flow.name} has no parameter {name!r}{nearest(name, known)}; "
                              f"it has {', '.join(known)}")
     (item,) = (item for item in fields(flow) if item.name == name)
     return name, parse_spec(spec, f"--over {name}", False, item.metadata["unbounded"]).tolist()
@@ -248,8 +247,3 @@ def collect(arguments, results, total, rest, size=lambda result: 1):
     finally:
         bar.clear()
     return found
-
-
-def _nearest(name, known):
-    match = get_close_matches(name, known, 1)
-    return f" (did you mean {match[0]!r}?)" if match else ""

@@ -6,8 +6,8 @@ from .progress import Bar
 
 
 def add(verbs):
-    add_verb(verbs, "compare", _run, "all methods on one eigenvalue: values, errors, times",
-             "stability compare vortex --k 2 --plot compare.png", _k_option)
+    add_verb(verbs, "compare", _run, "stability compare vortex --k 2 --plot compare.png",
+             _k_option)
 
 
 def _k_option(verb):

@@ -4,8 +4,8 @@ from .common import accuracy_options, add_verb, flow_of, options_of, report
 
 
 def add(verbs):
-    add_verb(verbs, "critical", _run, "the value of a parameter at which the first wavenumber becomes unstable",
-             "stability critical poiseuille --vary Re", vary_option, range_option,
+    add_verb(verbs, "critical", _run, "stability critical poiseuille --vary Re",
+             vary_option, range_option,
              search_option, long_wave_option, accuracy_options)
 
 

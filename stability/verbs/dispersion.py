@@ -11,8 +11,7 @@ from .methods import method_of, method_options, settings_of
 
 
 def add(verbs):
-    add_verb(verbs, "dispersion", _run, "growth rate and phase speed over wavenumbers",
-             "stability dispersion dune --Re 100 --k 1e-2:10:50 --plot dune.png",
+    add_verb(verbs, "dispersion", _run, "stability dispersion dune --Re 100 --k 1e-2:10:50 --plot dune.png",
              k_option, _mode_option, method_options, accuracy_options)
 
 

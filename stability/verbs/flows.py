@@ -3,21 +3,23 @@
 from dataclasses import fields
 from textwrap import wrap
 
-from ..flows import FLOWS
+from ..flows import FLOWS, find
 from ..flows.base import allowed, span_of
 from ..output import terminal_width, write
-from .common import flag, flow_class
+from .common import FLOW, flag
 
 
 def add(verbs):
     verb = verbs.add_parser("flows", help="flows, parameters, defaults, ranges, scales",
                             epilog="example: stability flows dune")
-    verb.add_argument("flow", nargs="?", metavar="FLOW", help=f"one of {', '.join(FLOWS)}")
-    verb.set_defaults(run=_run)
+    verb.add_argument("flow", nargs="?", metavar="FLOW", help=FLOW)
+    verb.set_defaults(run=_run, complete=lambda verb, words: None)
 
 
 def _run(arguments):
-    chosen = [flow_class(arguments.flow)] if arguments.flow else FLOWS.values()
+    from ..flows.catalogue import offers
+
+    chosen = [find(name) for name in ([arguments.flow] if arguments.flow else [*FLOWS, *offers()])]
     write("\n".join(_describe(flow, terminal_width()) for flow in chosen), None)
     return 0
 

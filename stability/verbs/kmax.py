@@ -9,8 +9,8 @@ from .methods import method_of, method_options, settings_of
 
 
 def add(verbs):
-    add_verb(verbs, "kmax", _run, "the fastest growing wavenumber, over a parameter",
-             "stability kmax dune --over Re=0.1:1e4:41 --plot kmax.png", _over_option, _mode_option, search_option,
+    add_verb(verbs, "kmax", _run, "stability kmax dune --over Re=0.1:1e4:41 --plot kmax.png",
+             _over_option, _mode_option, search_option,
              method_options, accuracy_options)
 
 

@@ -26,9 +26,9 @@ _DRAWN_AXES = 2
 
 
 def add(verbs):
-    add_verb(verbs, "map", _run, "a quantity over one to three parameters, on all cores; continues after Ctrl-C",
-             "stability map dune --over shields=1.1:4:20 --over Re=0.1:1e4:20 -o dunes.csv --plot dunes.png", _options,
-             accuracy_options)
+    add_verb(verbs, "map", _run,
+             "stability map dune --over shields=1.1:4:20 --over Re=0.1:1e4:20 -o dunes.csv --plot dunes.png",
+             _options, accuracy_options)
 
 
 def _options(verb):

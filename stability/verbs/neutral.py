@@ -8,8 +8,7 @@ from .critical import long_wave_option, range_option, searched, vary_option
 
 
 def add(verbs):
-    add_verb(verbs, "neutral", _run, "the value of a parameter at which growth vanishes, over another or over k",
-             "stability neutral poiseuille --vary Re --k 0.8:1.09:30:lin --plot neutral.png",
+    add_verb(verbs, "neutral", _run, "stability neutral poiseuille --vary Re --k 0.8:1.09:30:lin --plot neutral.png",
              vary_option, range_option, _over_or_k_option,
              long_wave_option, accuracy_options)
 

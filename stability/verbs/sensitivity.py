@@ -11,8 +11,8 @@ _MODES = MODES[:2]  # a mode that can be followed
 
 
 def add(verbs):
-    add_verb(verbs, "sensitivity", _run, "how growth rate and phase speed change with every parameter",
-             "stability sensitivity dune --k 1 --plot dune.png", _k_option, _mode_option, accuracy_options)
+    add_verb(verbs, "sensitivity", _run, "stability sensitivity dune --k 1 --plot dune.png",
+             _k_option, _mode_option, accuracy_options)
 
 
 def _k_option(verb):

@@ -7,8 +7,8 @@ from .common import accuracy_options, add_verb, collect, flow_of, k_option, opti
 
 
 def add(verbs):
-    add_verb(verbs, "spectrum", _run, "the least stable modes at one wavenumber",
-             "stability spectrum vortex --k 2 --modes 5", k_option, _modes_option,
+    add_verb(verbs, "spectrum", _run, "stability spectrum vortex --k 2 --modes 5",
+             k_option, _modes_option,
              accuracy_options)
 
 

@@ -16,8 +16,8 @@ _WAVENUMBERS = "1:100:9"  # of the second panel of the figure
 
 
 def add(verbs):
-    add_verb(verbs, "wellposed", _run, "where the equations are ill posed, and how internal modes grow with k",
-             "stability wellposed dune --shields 1.05 --mu1 0.7 --k 1,3,10,30,100", _k_option, _points_option)
+    add_verb(verbs, "wellposed", _run, "stability wellposed dune --shields 1.05 --mu1 0.7 --k 1,3,10,30,100",
+             _k_option, _points_option)
 
 
 def _k_option(verb):
