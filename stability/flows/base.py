@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 from ..checks import LARGEST, as_number, check_options, in_double_precision, shown
 from ..errors import ParameterError
+from ..layer import Profile
 from . import sources
 from .contract import check_body, check_class, verify
 
@@ -71,6 +72,17 @@ class Flow:
     def long_wave(self, k: Any) -> Any:
         """Return the leading-order growth rate sigma of the slow surface mode as k -> 0."""
         raise ParameterError(f"{self.name} has no slow surface mode: ask for mode most-unstable")
+
+    def state(self, layer: str, z: Any, base: Profile) -> dict[str, Any]:
+        """Return what is shown of the base flow of a layer at the heights z (points,), {name: number or (points,)}.
+
+        At least U, dU and shear_stress; others may follow, such as pressure and inertial_number.
+        """
+        return {"U": base.U, "dU": base.dU, "shear_stress": base.stress * base.eta * base.dU}
+
+    def remarks(self) -> list[str]:
+        """Return what else there is to know of the base flow, a sentence each."""
+        return []
 
     def halves(self) -> "tuple[Flow, ...]":
         """Return flows whose modes together are those of this one: itself, or symmetry classes on half the domain."""

@@ -87,6 +87,18 @@ class Dune(Flow):
         response = wavy_wall.response(k, self.Re, self.depth).value
         return 2j * k * self.shields / (3 * self.b) * self._excess**2 * (self._excess + 3) * response
 
+    def state(self, layer, z, base):
+        """In the bed the shear stress is uniform and the pressure the weight above; I from the friction law (4.48)."""
+        if layer == "fluid":
+            return super().state(layer, z, base)
+        pressure = 1 - z
+        return {**super().state(layer, z, base), "shear_stress": self.mu1 * self.shields, "pressure": pressure,
+                "inertial_number": np.maximum(self.shields / pressure - 1, 0) / self.b}
+
+    def remarks(self):
+        return [f"yield surface at z = {1 - self.shields:.10g}: no flow below",
+                f"interface at z = 0, velocity {self._surface_speed:.10g}"]
+
     @property
     def _excess(self):
         """sqrt(shields) - 1 without cancellation."""

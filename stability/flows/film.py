@@ -50,6 +50,10 @@ class Film(Flow):
         """sigma = -2 i k: waves of twice the surface speed, Yih (1963)."""
         return -2j * k
 
+    def state(self, layer, z, base):
+        """Pressure of the weight across the film, 2 cot(slope) (1 - z) / Re."""
+        return {**super().state(layer, z, base), "pressure": 2 * self.cot_slope * (1 - z) / self.Re}
+
     @property
     def cot_slope(self):
         return float(cot_deg(self.slope_deg))

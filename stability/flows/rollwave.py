@@ -58,6 +58,14 @@ class RollWave(Flow):
         """sigma = -i k: waves of 5/2 of the mean speed."""
         return -1j * k
 
+    def state(self, layer, z, base):
+        """Pressure 1 - z; the inertial number is uniform, I / I0 = (mu - mu1) / (mu2 - mu)."""
+        return {**super().state(layer, z, base), "pressure": 1 - z,
+                "inertial_number": (self.mu - self.mu1) / (self.mu2 - self.mu)}
+
+    def remarks(self):
+        return ["inertial_number in units of I0 of the friction law"]
+
     @property
     def mu(self):
         return float(tan_deg(self.slope_deg))

@@ -47,6 +47,11 @@ class TwoLayerCouette(Flow):
             Layer("upper", lambda s: profile(s, 1.0, self.interface_speed, m / (m + n), 1.0, 1.0, self.Re)),
         )
 
+    def state(self, layer, z, base):
+        """Pressure of the weight above, in units of the density of the upper liquid times the squared plate speed."""
+        above = -self.density_ratio * z if layer == "lower" else -z
+        return {**super().state(layer, z, base), "pressure": self.gravity * (1 + above)}
+
     def conditions(self, edges, names):
         """No slip; velocities and stresses meet on the displaced interface, which moves with the liquids.
 

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
 from ..angles import tan_deg
 from ..layer import Layer, Profile
 from .base import Flow, parameter
@@ -45,6 +47,14 @@ class Vortex(Flow):
     def long_wave(self, k):
         """sigma = -2 k^2 / (5 tan slope), thesis (4.25)."""
         return -2 * k**2 / (5 * self.mu)
+
+    def state(self, layer, z, base):
+        """The flow down the slope, U = (2/3) (1 - (1 - z)^{3/2}) as in `rollwave`; the perturbations do not feel it."""
+        zeta = np.sqrt(np.maximum(1 - z, 0))
+        return {"U": 2 * (1 - zeta**3) / 3, "dU": zeta, "shear_stress": self.mu * zeta**2, "pressure": zeta**2}
+
+    def remarks(self):
+        return ["U, dU: down the slope; the inertial number is uniform, that at which mu(I) = tan slope"]
 
     @property
     def mu(self):

@@ -5,6 +5,7 @@ A module is imported when its verb is named.
 
 VERBS = {
     "flows": "flows, parameters, defaults, ranges, scales",
+    "base": "profiles of the base flow: velocity, stresses, viscosities",
     "spectrum": "the least stable modes at one wavenumber",
     "dispersion": "growth rate and phase speed over wavenumbers",
     "kmax": "the fastest growing wavenumber, over a parameter",

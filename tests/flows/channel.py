@@ -12,7 +12,7 @@ class CouettePoiseuille(Flow):
 
     name: ClassVar[str] = "couette_poiseuille"
     title: ClassVar[str] = "plane Couette-Poiseuille flow"
-    scales: ClassVar[str] = "length: half the distance of the plates; velocity: of the pressure-driven part; Re: of both"
+    scales: ClassVar[str] = "length: half the distance of the plates; velocity: of the pressure-driven part"
     bottom: ClassVar[float] = -1.0
 
     Re: float = parameter(1e4, 0, look=(1e3, 1e5), meaning="Reynolds number")
