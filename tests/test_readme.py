@@ -17,12 +17,12 @@ import pytest
 
 from asymptotics.cli import main as asymptotics
 from stability import flows, spectrum
-from stability.cli import main as stability
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 BLOCKS = [(found[1], found[2], README[: found.start()].count("\n") + 1)  # language, text, line
           for found in re.finditer(r"```(\w*)\n(.*?)```", README, re.S)]
+(CHANNEL,) = [text for language, text, _ in BLOCKS if language == "python" and "(Flow)" in text]
 BAR = re.compile(r"\d\.\de-\d\d")
 FACTOR = 30
 ENVIRONMENT = "python3 -m venv"  # commands that build one are not run here
@@ -50,7 +50,7 @@ def _same(word, other):
 
 @pytest.fixture
 def programs(tmp_path, monkeypatch):
-    """Both programs on the path, and a folder of our own to work in."""
+    """Both programs on the path, and a folder of our own to work in, with the flow of one's own."""
     for name in ("stability", "asymptotics"):
         script = tmp_path / "bin" / name
         script.parent.mkdir(exist_ok=True)
@@ -59,6 +59,7 @@ def programs(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", f"{tmp_path / 'bin'}{os.pathsep}{os.environ['PATH']}")
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "channel.py").write_text(CHANNEL)
 
 
 def test_there_are_blocks_of_every_kind():
@@ -91,17 +92,14 @@ def test_python(tmp_path, monkeypatch, code, shown):
     assert agrees(printed.getvalue(), shown or ""), printed.getvalue()
 
 
-def test_the_new_flow_is_a_flow(capsys, monkeypatch):
-    """The block under "Add a flow", registered as it says, gives Orszag's eigenvalue (1971) and its critical point."""
-    (code,) = [text for language, text, _ in BLOCKS if language == "python" and "(Flow)" in text]
-    names = {"__name__": "readme"}
-    exec(compile(code, "README.md", "exec"), names)
-    flow = names["Poiseuille"]
-    mode = spectrum(flow(Re=1e4), 1.0, 1).modes[0]
-    assert abs(mode.c - (0.23752649 + 0.00373967j)) < 1e-8
-    monkeypatch.setitem(flows.FLOWS, "poiseuille", flow)
-    assert stability(["critical", "poiseuille", "--vary", "Re"]) == 0
-    assert "5772.22" in capsys.readouterr().out
+def test_the_flow_of_ones_own(tmp_path):
+    """Without slip it has Orszag's eigenvalue (1971); slip stabilises, Lauga & Cossu (2005)."""
+    (tmp_path / "channel.py").write_text(CHANNEL)
+    channel = flows.find(f"{tmp_path / 'channel.py'}:Channel")
+    assert abs(spectrum(channel(), 1.0, 1).modes[0].c - (0.23752649 + 0.00373967j)) < 1e-8
+    growth = [spectrum(channel(slip=slip), 1.0, 1).modes[0].growth_rate for slip in (0.0, 0.01, 0.02, 0.05)]
+    assert growth == sorted(growth, reverse=True)
+    assert growth[-1] < 0
 
 
 @pytest.mark.parametrize("command", sorted(set(re.findall("`(asymptotics expand [^`]*)`", README))))
