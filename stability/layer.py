@@ -32,7 +32,7 @@ from numpy.polynomial import chebyshev as C
 from .chebyshev import points
 from .errors import NotSmooth
 from .forms import Form
-from .smooth import Fit, Rough, fit
+from .smooth import MOST, Fit, Rough, fit
 
 FIELDS = ("v", "w", "t", "n")
 
@@ -112,13 +112,14 @@ class Layer:
     def slope(self, name: str, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the derivative in s of U or g at the points s, and a bound on its error, (points,) each.
 
-        The series is an exact polynomial, and so is its slope: the flow of this polynomial is what is solved. Its
-        error is what the series has left out, and rounding, times the steepest slope of its last term at that point.
+        The series is an exact polynomial, and so is its slope: the flow of this polynomial is what is solved. The
+        bound is that of the slope of the function: what the series has left out may have the highest degree that is
+        looked at, rounding has its own.
         """
         series, cut, largest = self._series[name]
-        degree = len(series) - 1
-        steepest = np.minimum(degree / np.sqrt(np.maximum(s * (1 - s), _EPS)), 2.0 * degree**2)
-        return 2 * C.chebval(2 * s - 1, C.chebder(series)), (cut + _NOISE * largest) * steepest
+        degrees, sizes = np.array([[MOST], [len(series) - 1]]), np.array([cut, _NOISE * largest])
+        steepest = np.minimum(degrees / np.sqrt(np.maximum(s * (1 - s), _EPS)), 2.0 * degrees**2)
+        return 2 * C.chebval(2 * s - 1, C.chebder(series)), sizes @ steepest
 
     @cached_property
     def _series(self) -> dict[str, tuple[np.ndarray, float, float]]:

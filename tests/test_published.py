@@ -106,7 +106,7 @@ def test_critical_point_of_poiseuille_flow():
 
 
 def test_critical_point_twin():
-    assert critical(wrong_coefficient(flows.Poiseuille(), "eta"), "Re").value != pytest.approx(5772.22, abs=1)
+    assert critical(wrong_coefficient(flows.Poiseuille(), "dU"), "Re").value != pytest.approx(5772.22, abs=1)
 
 
 def test_rounding_floor_of_poiseuille_flow():

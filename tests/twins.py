@@ -22,6 +22,7 @@ def wrong_coefficient(flow, name):
         def layers(self, names):
             return tuple(replace(layer, profile=_spoiled(layer.profile, name)) for layer in super().layers(names))
 
+    Wrong.__module__ = type(flow).__module__  # a flow from elsewhere is compared with its own series: too early here
     return Wrong(**_parameters(flow))
 
 
@@ -36,6 +37,7 @@ def wrong_condition(flow, index):
             right[index] = super().conditions(edges, spoiled)[index]
             return tuple(right)
 
+    Wrong.__module__ = type(flow).__module__
     return Wrong(**_parameters(flow))
 
 
