@@ -88,7 +88,7 @@ class Request:
     def _values(self, name, values):
         check_parameter_name(self.flow, name)
         (item,) = (item for item in fields(self.flow) if item.name == name)
-        return tuple(check_parameter(self.flow.name, item, value) for value in flat(values))
+        return tuple(check_parameter(self.flow.name, item, value) for value in flat(values, f"over: {name}"))
 
     def _check_quantity(self):
         for name, owner, meaning in (("k", "growth_rate", "wavenumbers"),

@@ -110,6 +110,7 @@ class Grid:
 WAVENUMBER = Axis("k", "wavenumber $k$")
 GROWTH_RATE = Axis("growth_rate", r"growth rate $\sigma_r$")
 PHASE_SPEED = Axis("phase_speed", "phase speed $c_r$")
+ELASTICITY, PARAMETER = Axis("elasticity", "elasticity of the growth rate"), Axis("parameter", "")
 K_MAX = Axis("k_max", r"fastest growing $k_\mathrm{max}$")
 GROWTH_AT_K_MAX = Axis("growth_rate", r"growth rate at $k_\mathrm{max}$")
 

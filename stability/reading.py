@@ -131,7 +131,7 @@ def _json(text, path):
     if not isinstance(content, dict) or not isinstance(content.get("rows"), list) or "flow" not in content:
         raise ParameterError(f"load: {path!r} is no result: it has no flow and rows")
     header = _infinite({key: value for key, value in content.items() if key != "rows"})
-    parameters = header.pop("parameters", {})
+    parameters = _infinite(header.pop("parameters", {}))
     first = {key: header.pop(key) for key in ("flow", "method", "version") if key in header}
     return Stored({**first, **parameters, **header}, tuple(_infinite(row) for row in content["rows"]))
 
@@ -175,6 +175,8 @@ def _columns(variables, main):
         elif len(main) > 1:
             grid = product(*(places[axis] for axis in main))
             columns[name] = [point[main.index(name)] for point in grid]
+    if not lists and "k_max" in columns and "maxima" not in columns:
+        return _before_last(columns, "maxima", [[] for _ in columns["k_max"]])  # none has any
     if lists:
         prefix, = {name.partition("_")[0] for name in lists}
         pairs = [[[first, second] for first, second in zip(*both, strict=True) if not isnan(first)]

@@ -16,7 +16,7 @@ from .eigenfunction import sharpened
 from .errors import ParameterError
 from .mode import Mode
 from .output import Row
-from .panels import BARS, Axis, Curve, Panel
+from .panels import BARS, ELASTICITY, PARAMETER, Curve, Panel
 from .record import Record
 from .solver import Solver
 from .status import NO_DERIVATIVE, is_resolved
@@ -66,7 +66,7 @@ class Sensitivities(Record):
         rows = [row for row in self.rows() if row["elasticity"] is not None]
         names = ["$k$" if row["parameter"] == "k" else symbol_of(self.flow, row["parameter"]) for row in rows]
         bars = Curve(np.array([row["elasticity"] for row in rows]), np.array(names), kind=BARS)
-        return (Panel(Axis("elasticity", "elasticity of the growth rate"), Axis("parameter", ""), (bars,), zero="x",
+        return (Panel(ELASTICITY, PARAMETER, (bars,), zero="x",
                       limits={"ylim": (len(rows) - 0.5, -0.5)}),)
 
     def rows(self) -> list[Row]:

@@ -11,11 +11,13 @@ from .errors import ParameterError
 from .output import Row
 from .panels import (
     BARS,
+    ELASTICITY,
     GROWTH_AT_K_MAX,
     GROWTH_RATE,
     K_MAX,
     LINE,
     MARKED,
+    PARAMETER,
     PHASE_SPEED,
     POINTS,
     WAVENUMBER,
@@ -30,7 +32,7 @@ from .record import Record
 from .symbols import axis_label, symbol, symbol_of, title_of, value_text
 
 _FIRST = "flow", "method", "version"
-_AXES = {axis.name: axis for axis in (WAVENUMBER, GROWTH_RATE, PHASE_SPEED, K_MAX)}
+_AXES = {axis.name: axis for axis in (WAVENUMBER, GROWTH_RATE, PHASE_SPEED, K_MAX, ELASTICITY, PARAMETER)}
 _SPECIAL = (  # columns that a table of this kind has, what is drawn: x, y, a curve for each value of, kind
     ({"elasticity", "parameter"}, "elasticity", "parameter", None, BARS),
     ({"seconds", "method"}, "seconds", "error", "method", MARKED),
@@ -114,7 +116,7 @@ class Stored(Record):
                 return (Panel(self._axis(x), self._axis(y), self._curves(x, y, each, kind)),)
         over = str(header.get("over", "k")).split(", ")
         if "quantity" in header:
-            return tuple(self._grid(over + ["k"] * (header["quantity"] == "growth_rate"), y) for y in self._drawn(over))
+            return tuple(self._grid(over, y) for y in self._drawn(over))
         x = over[0] if over[0] in names else next(iter(self.table[0]))
         return tuple(Panel(replace(self._axis(x), scale=scale_of(self._numbers(x))), self._axis(y),
                            self._curves(x, y, header.get("each"), MARKED if "over" in header else LINE),
