@@ -4,7 +4,6 @@ Exit status: 0 done; 2 bad usage or input; 3 `check` found another order than ex
 """
 
 import argparse
-import json
 import shutil
 import sys
 from difflib import get_close_matches
@@ -13,7 +12,7 @@ from textwrap import wrap
 from . import __version__
 from .streams import drop_output, open_streams, say
 
-VERBS = ("flows", "expand", "check")
+VERBS = ("flows", "expand", "evaluate", "check")
 _REMEDY = "give the output of stability dispersion ... --csv"
 _MARK = "\ufeff"  # of the byte order, which some programs write first
 _INDENT = " " * 8  # of what is left of a line wider than the terminal
@@ -129,6 +128,16 @@ def _parser(argv) -> _Parser:
     form = expand.add_mutually_exclusive_group()
     form.add_argument("--latex", dest="form", action="store_const", const="latex", help="LaTeX formulas")
     form.add_argument("--json", dest="form", action="store_const", const="json", help="JSON")
+    expand.add_argument("--numbers", action="store_true", help="defaults for parameters that are not given")
+    evaluate = verbs.add_parser("evaluate", help="the expansion as numbers, in the columns of `stability dispersion`",
+                                add_help=False, epilog="example: asymptotics evaluate dune --k 0.01:0.1:9 --csv")
+    evaluate.add_argument("flow", metavar="FLOW", help="one of those that are listed by: asymptotics flows")
+    evaluate.add_argument("--k", required=True, metavar="SPEC",
+                          help="wavenumbers: a number, a list a,b,c, or a range a:b:n (log-spaced) or a:b:n:lin")
+    form = evaluate.add_mutually_exclusive_group()
+    form.add_argument("--csv", dest="form", action="store_const", const="csv", help="comma-separated values")
+    form.add_argument("--json", dest="form", action="store_const", const="json", help="JSON")
+    evaluate.set_defaults(run=_evaluate)
     check = verbs.add_parser("check", help="compare with numbers written by `stability dispersion ... --csv`",
                              add_help=False,
                              epilog="example: stability dispersion dune --k 1e-6:1e-4:9 --csv | asymptotics check dune")
@@ -139,7 +148,7 @@ def _parser(argv) -> _Parser:
                        help="real: growth rates only; imag: phase speeds only; both: each by itself")
     check.add_argument("--k-max", metavar="K", help="leave out larger wavenumbers (default: those beyond two decades)")
     check.set_defaults(run=_check)
-    for verb in (expand, check):
+    for verb in (expand, evaluate, check):
         verb.add_argument("--order", metavar="M", help="highest power of the gauge, e.g. 2 or 4/3")
         verb.add_argument("--regime", metavar="NAME", help="which limit (see: asymptotics flows)")
         verb.add_argument("-h", "--help", action=_Help, help="show this help and exit")
@@ -156,6 +165,8 @@ def _add_parameters(verb) -> None:
     known = {parameter.flag: parameter.name for name in flows.names() for parameter in flows.load(name).PARAMETERS}
     for flag, name in known.items():
         for spelling in dict.fromkeys((flag, f"--{name}")):
+            if spelling in verb._option_string_actions:
+                continue  # the wavenumbers of evaluate
             group.add_argument(spelling, dest=f"parameter {name}", metavar="V", help=argparse.SUPPRESS)
     verb.set_defaults(parameters=group)
 
@@ -182,12 +193,43 @@ def _describe(name: str, flow) -> str:
 
 
 def _expand(arguments) -> int:
-    from . import flows
+    from . import flows, printing
+
+    flow = _load(arguments.flow)
+    expansion = flows.expand(arguments.flow, arguments.regime, arguments.order, numbers=arguments.numbers,
+                             **_given(arguments))
+    if arguments.numbers:
+        _need_numbers(expansion)
+    meanings = {parameter.name: parameter.meaning for parameter in flow.PARAMETERS}
+    writer = {"json": printing.as_json, "latex": lambda one: printing.latex(one, flow.LATEX),
+              None: lambda one: _folded(printing.table(one, meanings))}[arguments.form]
+    print(writer(expansion))
+    return 0
+
+
+def _need_numbers(expansion) -> None:
+    missing = [name for name, value in expansion.parameters.items() if value is None]
+    if missing:
+        raise BadUsage(f"regime {expansion.regime} needs {', '.join('--' + name for name in missing)}: there is no "
+                       "default")
+
+
+def _evaluate(arguments) -> int:
+    from . import flows, printing
+    from .specs import BadSpec, parse_spec
 
     _load(arguments.flow)
-    expansion = flows.expand(arguments.flow, arguments.regime, arguments.order, **_given(arguments))
-    writer = {"json": _json, "latex": _latex, None: lambda expansion: _folded(_table(expansion))}[arguments.form]
-    print(writer(expansion))
+    try:
+        k = parse_spec(arguments.k, "--k")
+    except BadSpec as reason:
+        raise BadUsage(reason) from None
+    expansion = flows.expand(arguments.flow, arguments.regime, arguments.order, numbers=True, **_given(arguments))
+    if expansion.gauge.name != "k":
+        raise BadUsage(f"regime {expansion.regime} is a series in {expansion.gauge}, not in k: evaluate takes a regime "
+                       "in powers of k; see asymptotics expand for its coefficients")
+    _need_numbers(expansion)
+    text = printing.numbers(expansion, k, arguments.form)
+    print(text if arguments.form else _folded(text))
     return 0
 
 
@@ -355,48 +397,3 @@ def _folded(text: str) -> str:
     return "\n".join(part for line in text.splitlines()
                      for part in wrap(line, width, subsequent_indent=_INDENT, break_long_words=False,
                                       break_on_hyphens=False) or [line])
-
-
-def _json(expansion) -> str:
-    values = expansion.values()
-    terms = [{"power": str(power), "coefficient": str(c), "value": _pair(values[power])}
-             for power, c in expansion.terms.items()]
-    record = {
-        "flow": expansion.flow,
-        "regime": expansion.regime,
-        "gauge": str(expansion.gauge),
-        "parameters": {name: _plain(value) for name, value in expansion.parameters.items()},
-        "terms": terms,
-        "growth_rate": str(expansion.growth_rate),
-        "phase_speed": str(expansion.phase_speed),
-    }
-    return json.dumps(record, indent=1, allow_nan=False)
-
-
-def _pair(value):
-    return None if value is None else [value.real, value.imag]
-
-
-def _plain(value):
-    """A JSON number; infinity, which JSON lacks, as the string that the command line takes."""
-    if value is None:
-        return None
-    return float(value) if value.is_finite else "inf"
-
-
-def _latex(expansion) -> str:
-    from sympy import latex
-
-    lines = [rf"\sigma_{{{latex(power)}}} &= {latex(c)}" for power, c in expansion.terms.items()]
-    gauge = latex(expansion.gauge)
-    return "\n".join([rf"% \sigma = \sum_p \sigma_p {gauge}^p", *(line + r" \\" for line in lines)])
-
-
-def _table(expansion) -> str:
-    values = expansion.values()
-    cells = [("power", "value", "coefficient")]
-    for power, c in expansion.terms.items():
-        value = values[power]
-        cells.append((str(power), "-" if value is None else f"{value.real:+.12e} {value.imag:+.12e}i", str(c)))
-    widths = [max(len(row[column]) for row in cells) for column in range(2)]
-    return "\n".join(f"{power.rjust(widths[0])}  {value.ljust(widths[1])}  {c}" for power, value, c in cells)

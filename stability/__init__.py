@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from .mode import Mode
     from .neutral import critical, neutral_curve
     from .optimum import Optimum, k_max
+    from .reading import load
     from .relation import DispersionRelation, dispersion
     from .sensitivity import sensitivities
     from .spectra import Spectrum, spectrum
@@ -36,6 +37,7 @@ __all__ = [
     "dispersion",
     "flows",
     "k_max",
+    "load",
     "neutral_curve",
     "parameter_map",
     "sensitivities",
@@ -44,7 +46,8 @@ __all__ = [
 
 _LATER = {
     "DispersionRelation": "relation", "Mode": "mode", "Optimum": "optimum", "Spectrum": "spectra",
-    "critical": "neutral", "dispersion": "relation", "flows": "flows", "k_max": "optimum", "neutral_curve": "neutral",
+    "critical": "neutral", "dispersion": "relation", "flows": "flows", "k_max": "optimum", "load": "reading",
+    "neutral_curve": "neutral",
     "parameter_map": "maps", "sensitivities": "sensitivity", "spectrum": "spectra",
 }
 

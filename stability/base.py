@@ -10,11 +10,15 @@ from .checks import check_integer
 from .errors import NotSmooth
 from .flows.base import check_flow
 from .output import Row
+from .panels import Axis, Curve, Panel
 from .record import Record
 from .smooth import Rough, fit
 from .status import RESOLVED
 from .wellposed import numbers
 
+HEIGHT = Axis("z", "height $z$")
+LABELS = {"U": "velocity $U$", "dU": "shear rate $U'$", "shear_stress": r"shear stress $\tau$", "pressure": "pressure $p$",
+          "inertial_number": "inertial number $I$"}
 POINTS, MOST = 41, 100_000  # heights of a layer: usual, largest number
 
 
@@ -51,6 +55,19 @@ class BaseFlow(Record):
                   for name, column in self.profiles.items()}
         return [{"layer": layer, **{name: column[i] for name, column in values.items()}, "status": RESOLVED}
                 for i, layer in enumerate(self.layer)]
+
+    def panels(self) -> tuple[Panel, ...]:
+        """Velocity, its slope and the stresses over the height, a curve for each layer."""
+        return tuple(self._panel(Axis(name, label)) for name, label in LABELS.items() if name in self.profiles)
+
+    def _panel(self, axis: Axis) -> Panel:
+        names = np.array(self.layer)
+        several = len(self.flux) > 1
+        curves = tuple(Curve(self.profiles[axis.name][names == layer], self.profiles["z"][names == layer],
+                             label=layer if several else None,
+                             x_error=self.error[names == layer] if axis.name == "dU" and self.error.any() else None)
+                       for layer in self.flux)
+        return Panel(axis, HEIGHT, curves)
 
     def notes(self) -> list[str]:
         fluxes = [f"flux in {layer}: {flux:.10g}" for layer, flux in self.flux.items()]

@@ -37,14 +37,18 @@ def shown(value, number=None):
     return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
 
 
-def flat(values):
-    """One value or any nest of sequences and arrays as a flat list."""
-    return (values if isinstance(values, np.ndarray) else np.asarray(values, dtype=object)).ravel().tolist()
+def flat(values, name):
+    """One value or a sequence of them as a list; what has more dimensions is refused, or its shape would be lost."""
+    array = values if isinstance(values, np.ndarray) else np.asarray(values, dtype=object)
+    if array.ndim > 1:
+        raise ParameterError(f"{name} must be a number or a sequence of numbers (got shape {array.shape}): flatten it, "
+                             "and give the results its shape")
+    return array.ravel().tolist()
 
 
 def check_wavenumbers(k, name="k"):
-    """Return k, a number or a sequence, as a flat float array (points,), or raise a ParameterError."""
-    values = flat(k)
+    """Return k, a number or a sequence, as a float array (points,), or raise a ParameterError."""
+    values = flat(k, name)
     if not values:
         raise ParameterError(f"{name}: give at least one wavenumber")
     numbers = [as_number(value) for value in values]

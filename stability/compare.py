@@ -20,11 +20,13 @@ from .branch import Branch, surface_mode
 from .dense import finite_rates
 from .errors import ModeLost, ParameterError
 from .output import Row
+from .panels import MARKED, THIN, Axis, Curve, Panel
 from .record import Record
 from .relation import dispersion
 from .solver import DEGREES, Solver
 from .spectra import spectrum
 from .status import RESOLVED
+from .symbols import value_text
 from .threads import one_thread
 
 COLLOCATION_DEGREES = tuple(degree for degree in DEGREES if degree <= 128)
@@ -83,6 +85,26 @@ class Comparison(Record):
 
     def about(self) -> dict[str, Any]:
         return {"k": self.k}
+
+    @property
+    def subtitle(self) -> str:
+        return f"; $k$ = {value_text(self.k)}"
+
+    def panels(self) -> tuple[Panel, ...]:
+        """Relative error against time, a curve for each method; thin what it reports."""
+        scale, floor = abs(self.reference.sigma), np.finfo(float).eps / 2  # errors below are drawn there
+        curves: list[Curve] = []
+        for method in METHODS:
+            rows = [one for one in self.measurements if one.method == method]
+            if not rows:
+                continue
+            seconds = np.array([one.seconds for one in rows])
+            curves.append(Curve(seconds, np.maximum([one.error / scale for one in rows], floor), method, MARKED))
+            if rows[0].reported is not None:
+                reported = np.maximum([(one.reported or 0.0) / scale for one in rows], floor)
+                curves.append(Curve(seconds, reported, None, THIN, of=len(curves) - 1))
+        return (Panel(Axis("seconds", "CPU seconds per eigenvalue", "log"),
+                      Axis("relative_error", "relative error (thin: reported)", "log"), tuple(curves)),)
 
 
 @one_thread

@@ -1,4 +1,4 @@
-"""Figures of maps: lines over one axis, colours over two; jumps between branches drawn, doubtful points hatched.
+"""Figures of grids: lines over one axis, colours over two; jumps between branches drawn, doubtful points hatched.
 
 An infinite value of a parameter is drawn as one more cell, set apart, beside the finite ones.
 """
@@ -7,40 +7,24 @@ from typing import Any
 
 import numpy as np
 
-from .checks import check_options
-from .errors import ParameterError
-from .plots import BLUE, DISPERSION, GREY, NEUTRAL, OPTIMA, RED
+from .panels import Grid
+from .plots import GREY, RED
+from .spacing import is_logarithmic, spans_decades
 from .status import is_outgrown, is_settled, is_stable
 
 HATCHES = {"not resolved": "////", "stable": "..", "outgrown by an internal mode": "xxxx"}
 _SIGNED, _RISING = "RdBu_r", "viridis"
-_DECADES = 20.0  # ratio of values beyond which their logarithm is shown
 _FEW, _MANY = (2, 5), (1.5, 2, 3, 5, 7)  # ticks between powers of ten
 _LEAST_SHADE = 1e-2  # of the largest: below, colours of signed values are linear
 
 
-def draw_map(found, figure):
-    """Draw a Map over one or two axes into an empty figure: the quantity, and what belongs to it."""
-    axes = figure.subplots(1, 2)
-    for axis, column in zip(axes, labels(found), strict=True):
-        panel(found, axis, column)
-    _legend(figure, found, states(found["status"]))
-
-
-def panel(found, axis, column):
-    """Draw one result of a Map over one or two axes into a matplotlib Axes; return it."""
-    names = list(found.axes)
-    if len(names) > 2:
-        raise ParameterError(f"only maps over one or two axes are drawn (this one has {', '.join(names)})")
-    column = check_options("quantity", column, found.results[:-1])
-    label, doubtful = labels(found).get(column, column), states(found["status"])
-    if len(names) == 1:
-        _lines(axis, found, column, doubtful)
-        axis.set(xlabel=_symbol(names[0]), ylabel=label)
+def draw_grid(axis, grid: Grid, line_options):
+    """Draw a Grid over one or two axes into a matplotlib Axes."""
+    if len(grid.axes) == 1:
+        _lines(axis, grid, line_options)
     else:
-        _colours(axis, found, column, label, doubtful)
-        axis.set(xlabel=_symbol(names[1]), ylabel=_symbol(names[0]))
-    return axis
+        _colours(axis, grid)
+    axis.set(xlabel=grid.x.label, ylabel=grid.y.label)
 
 
 def states(status):
@@ -50,44 +34,34 @@ def states(status):
     return dict(zip(HATCHES, (~settled, stable, outgrown), strict=True))
 
 
-def labels(found):
-    """The two results that are drawn, with their labels."""
-    if found.quantity == "k_max":
-        return OPTIMA
-    if found.quantity == "neutral":
-        return {found.request.vary: f"{found.request.vary} {NEUTRAL['value']}", "k": "wavenumber $k$ (0: long waves)"}
-    return DISPERSION
-
-
-def _legend(figure, found, doubtful):
+def legend_of(grid: Grid):
+    """Handles and labels of what is marked in a figure of grids: doubtful points, and jumps over two axes."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
     handles: list[Any] = [Patch(facecolor="none", edgecolor="k", hatch=HATCHES[name], label=name)
-               for name, where in doubtful.items() if where.any()]
-    if found.quantity == "k_max" and len(found.axes) == 2 and any(part.any() for part in branch_changes(found)):
+                          for name, where in grid.states.items() if where.any()]
+    if grid.jumps is not None and len(grid.axes) == 2 and any(part.any() for part in grid.jumps):
         handles.append(Line2D([], [], color=RED, label="jump between branches"))
-    if handles:
-        figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), fontsize=8)
+    return handles, [handle.get_label() for handle in handles]
 
 
-def _lines(axis, found, column, doubtful):
-    (values,), y = found.axes.values(), found[column]
+def _lines(axis, grid, line_options):
+    (_, values), = grid.axes
+    y = grid.values
     order = np.argsort(values, kind="stable")
     x, y = _places(values)[order], y[order]
     gaps = np.isinf(values[order])[1:]
-    if f"second_{column}" in found.results:
-        second = found[f"second_{column}"][order]
-        if np.isfinite(second).any():
-            axis.plot(x, second, ".", color=RED, markersize=4, label="second maximum")
-            axis.legend()
-    if found.quantity == "k_max":
-        gaps = gaps | branch_changes(found)[0]
-    axis.plot(*(np.insert(part, gaps.nonzero()[0] + 1, np.nan) for part in (x, y)), ".-", color=BLUE, markersize=4)
+    if grid.second is not None and np.isfinite(grid.second).any():
+        axis.plot(x, grid.second[order], ".", color=RED, markersize=4, label="second maximum")
+    if grid.jumps is not None:
+        gaps = gaps | grid.jumps[0]
+    style = {"linestyle": "-", "marker": ".", "markersize": 4, **line_options}
+    axis.plot(*(np.insert(part, gaps.nonzero()[0] + 1, np.nan) for part in (x, y)), **style)
     _scale(axis, "x", x)
-    axis.set_yscale("log" if _spans_decades(y) else "linear")
+    axis.set_yscale("log" if spans_decades(y) else "linear")
     edges = cell_edges(x)
-    for name, where in doubtful.items():
+    for name, where in grid.states.items():
         for index in where[order].nonzero()[0]:
             axis.axvspan(edges[index], edges[index + 1], facecolor="none", edgecolor=GREY, hatch=HATCHES[name],
                          linewidth=0)
@@ -95,19 +69,20 @@ def _lines(axis, found, column, doubtful):
     _set_infinity_apart(axis, "x", values, GREY, 0.6)
 
 
-def _colours(axis, found, column, label, doubtful):
-    y, x = (_places(values) for values in found.axes.values())
-    image = mesh(axis, x, y, found[column])
-    axis.figure.colorbar(image, ax=axis, label=label)
-    for name, where in doubtful.items():
+def _colours(axis, grid):
+    sides = [values for _, values in grid.axes]
+    y, x = (_places(values) for values in sides)
+    image = mesh(axis, x, y, grid.values)
+    axis.figure.colorbar(image, ax=axis, label=grid.quantity.label)
+    for name, where in grid.states.items():
         hatch(axis, x, y, where, HATCHES[name])
-    if found.quantity == "k_max":
-        jumps(axis, x, y, *branch_changes(found))
-    rows, columns = (np.argsort(values, kind="stable")[:np.isfinite(values).sum()] for values in found.axes.values())
-    if column == "growth_rate" and image.get_cmap().name == _SIGNED and min(len(rows), len(columns)) > 1:
-        axis.contour(x[columns], y[rows], found[column][np.ix_(rows, columns)], levels=[0.0], colors="k",
+    if grid.jumps is not None:
+        jumps(axis, x, y, *grid.jumps)
+    rows, columns = (np.argsort(values, kind="stable")[:np.isfinite(values).sum()] for values in sides)
+    if grid.signed and image.get_cmap().name == _SIGNED and min(len(rows), len(columns)) > 1:
+        axis.contour(x[columns], y[rows], grid.values[np.ix_(rows, columns)], levels=[0.0], colors="k",
                      linewidths=0.8)
-    for which, values in zip("yx", found.axes.values(), strict=True):
+    for which, values in zip("yx", sides, strict=True):
         _set_infinity_apart(axis, which, values, "w", 3.0)
 
 
@@ -119,10 +94,10 @@ def mesh(axis, x, y, values):
     signed = known.size and known.min() < 0 < known.max()
     if signed:
         most = np.abs(known).max()
-        norm = SymLogNorm(_LEAST_SHADE * most, vmin=-most, vmax=most) if _spans_decades(np.abs(known)) else \
+        norm = SymLogNorm(_LEAST_SHADE * most, vmin=-most, vmax=most) if spans_decades(np.abs(known)) else \
             Normalize(-most, most)
     else:
-        norm = LogNorm() if _spans_decades(known) else Normalize()
+        norm = LogNorm() if spans_decades(known) else Normalize()
     rows, columns = np.argsort(y, kind="stable"), np.argsort(x, kind="stable")
     image = axis.pcolormesh(cell_edges(x[columns]), cell_edges(y[rows]),
                             np.ma.masked_invalid(values[np.ix_(rows, columns)]), norm=norm,
@@ -165,7 +140,7 @@ def _scale(axes, which, values):
 
     if is_logarithmic(values):
         axes.set(**{f"{which}scale": "log"})
-        if not _spans_decades(values):
+        if not spans_decades(values):
             axis = {"x": axes.xaxis, "y": axes.yaxis}[which]
             axis.set_major_formatter(StrMethodFormatter("{x:g}"))
             axis.set_minor_locator(LogLocator(subs=_FEW if max(values) > 5 * min(values) else _MANY))
@@ -225,21 +200,3 @@ def cell_edges(values):
         return values[0] + np.array([-0.5, 0.5])
     middle = (values[1:] + values[:-1]) / 2
     return np.concatenate(([2 * values[0] - middle[0]], middle, [2 * values[-1] - middle[-1]]))
-
-
-def is_logarithmic(values):
-    """Whether the steps of the sorted values are more even in the logarithm."""
-    values = np.sort(values)
-    if len(values) < 3 or values[0] <= 0:
-        return False
-    return np.ptp(np.diff(np.log(values))) / np.log(values[-1] / values[0]) < \
-        np.ptp(np.diff(values)) / (values[-1] - values[0]) * (1 - 1e-9)
-
-
-def _spans_decades(values):
-    known = values[np.isfinite(values)]
-    return known.size > 0 and known.min() > 0 and known.max() > _DECADES * known.min()
-
-
-def _symbol(name):
-    return f"${name}$" if len(name) == 1 else name

@@ -24,10 +24,12 @@ from .journal import Journal
 from .neutral import check_parameter_name, critical_sweep
 from .optimum import k_max_sweep
 from .output import Row
+from .panels import GROWTH_AT_K_MAX, GROWTH_RATE, K_MAX, PHASE_SPEED, WAVENUMBER, Axis, Grid
 from .pool import GUARD, MOST_WORKERS, processes
 from .record import Record
 from .relation import default_mode, dispersion
 from .solver import DEGREES, TOLERANCE, check_accuracy
+from .symbols import axis_label, symbol_of
 from .wellposed import outgrown
 
 if TYPE_CHECKING:
@@ -46,6 +48,7 @@ _COLUMNS = {
 }
 _PIECE = {"k_max": 4, "growth_rate": 1, "neutral": 16}  # flows of a piece, neighbours along the innermost parameter
 _MOST_AXES = 3
+_DRAWN_AXES = 2
 _MOST_POINTS = 1_000_000
 _ROUNDS = 3  # in a row without a finished piece: then the executor is given up
 
@@ -86,7 +89,7 @@ class Request:
     def _values(self, name, values):
         check_parameter_name(self.flow, name)
         (item,) = (item for item in fields(self.flow) if item.name == name)
-        return tuple(check_parameter(self.flow.name, item, value) for value in flat(values))
+        return tuple(check_parameter(self.flow.name, item, value) for value in flat(values, f"over: {name}"))
 
     def _check_quantity(self):
         for name, owner, meaning in (("k", "growth_rate", "wavenumbers"),
@@ -209,14 +212,9 @@ class Map(Record):
     def bounded(self) -> str:
         return {"k_max": "k_max", "growth_rate": "sigma", "neutral": self.request.vary or ""}[self.quantity]
 
-    @property
-    def title(self) -> str:
-        """The flow and its fixed parameters."""
-        fixed = {name: value for name, value in self.request.description()["parameters"].items()
-                 if name != self.request.vary}
-        return f"{self.flow.name}: {', '.join(f'{name} {_short(value)}' for name, value in fixed.items())}"
-
-    def __getitem__(self, name: str) -> np.ndarray:
+    def __getitem__(self, name: Any) -> Any:
+        if not isinstance(name, str):
+            return super().__getitem__(name)
         if name in self.axes:
             return self.axes[name]
         if name not in self.results:
@@ -254,15 +252,39 @@ class Map(Record):
         mode = {"mode": default_mode(self.flow)} if self.quantity == "growth_rate" else {}
         return {**mode, "tolerance": float(request.tolerance), "max_degree": request.max_degree}
 
-    def plot(self, ax: "Axes | None" = None, quantity: str | None = None) -> "Axes":
+    def panels(self) -> tuple[Grid, ...]:
+        """The two results that are drawn unless told otherwise."""
+        return tuple(self._grid(axis) for axis in _DRAWN[self.quantity](self))
+
+    def plot(self, ax: "Axes | None" = None, quantity: str | None = None, *, label: str | None = None,
+             **line_options: Any) -> "Axes":
         """Draw a result (the first, by default) over one or two axes into the matplotlib Axes `ax`, or a new one."""
-        from . import mapplots, plots
+        from . import plots
 
-        return mapplots.panel(self, plots.axes_or_new(ax), self.results[0] if quantity is None else quantity)
+        name = self.results[0] if quantity is None else check_options("quantity", quantity, self.results[:-1])
+        known = {axis.name: axis for axis in _DRAWN[self.quantity](self)}
+        options = line_options if label is None else {"label": label, **line_options}
+        return plots.plot([self._grid(known.get(name, Axis(name, name)))], ax, None, None, **options)
+
+    def _grid(self, quantity: Axis) -> Grid:
+        if len(self.axes) > _DRAWN_AXES:
+            raise ParameterError(f"only maps over one or two axes are drawn (this one has {', '.join(self.axes)})")
+        from .mapplots import branch_changes, states
+
+        second = f"second_{quantity.name}"
+        axes = [(Axis(name, WAVENUMBER.label if name == "k" else axis_label(self.flow, name)), values)
+                for name, values in self.axes.items()]
+        return Grid(tuple(axes), quantity, self[quantity.name], states(self["status"]),
+                    branch_changes(self) if self.quantity == "k_max" else None,
+                    self[second] if second in self.results else None, quantity.name == "growth_rate")
 
 
-def _short(value):
-    return f"{value:g}" if isinstance(value, float) else value
+_DRAWN = {  # the results that a figure shows
+    "k_max": lambda found: (K_MAX, GROWTH_AT_K_MAX),
+    "growth_rate": lambda found: (GROWTH_RATE, PHASE_SPEED),
+    "neutral": lambda found: (Axis(found.request.vary, f"{symbol_of(found.flow, found.request.vary)} at zero growth"),
+                              replace(WAVENUMBER, label="wavenumber $k$ (0: long waves)")),
+}
 
 
 def parameter_map(flow: "Flow", over: "Mapping[str, ArrayLike]", quantity: str | None = None, *,

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from .eigenfunction import Fields
+    from .panels import Panel
 
 _SLOPE = 4.0  # error of d sigma/dk in units of error of sigma / k (measured)
 
@@ -55,11 +56,24 @@ class Mode(Eigenvalue):
 
         return Eigenfunction(self).at(z)
 
-    def plot(self, ax: "Axes | None" = None) -> "Axes":
+    def panels(self) -> "tuple[Panel, ...]":
+        """|u| and |w| against z, layer by layer."""
+        from .eigenfunction import Eigenfunction
+        from .panels import LINE, Axis, Curve, Panel
+
+        curves: list[Curve] = []
+        for part in Eigenfunction(self).profiles():
+            again = bool(curves)
+            curves += [Curve(np.abs(values), part.z, None if again else name, LINE, of=number if again else None)
+                       for number, (name, values) in enumerate((("$|u|$", part.u), ("$|w|$", part.w)))]
+        return (Panel(Axis("velocity", f"velocity at $k$ = {self.k:g}"), Axis("z", "height $z$"), tuple(curves),
+                      limits={"xlim": (0, None)}),)
+
+    def plot(self, ax: "Axes | None" = None, *, label: str | None = None, **line_options: Any) -> "Axes":
         """Draw |u| and |w| against z into the matplotlib Axes `ax`, or a new one; return it."""
         from . import plots
 
-        return plots.mode(self, plots.axes_or_new(ax))
+        return plots.plot(self.panels(), ax, None, label, **line_options)
 
     def sensitivity(self) -> dict[str, complex | None]:
         """Return d sigma / d parameter of every numeric parameter, and "k", at the others fixed, from the left vector.

@@ -1,6 +1,7 @@
 """A result as a netCDF 3 file: every column a variable along the dimension of the result, self-describing."""
 
 import io
+from collections.abc import Iterator
 from dataclasses import fields
 from typing import Any
 
@@ -42,20 +43,30 @@ def encode(record: Record) -> bytes:
     """Return the content of the file."""
     buffer = io.BytesIO()
     with netcdf_file(buffer, "w") as file:
-        for name, value in _attributes(record).items():
+        for name, value in attributes_of(record).items():
             setattr(file, _RENAMED.get(name, name), _plain(value))
-        for name, values in record.columns().items():
-            for part, numbers in _real(name, values):
-                _add(file, record, part, numbers, _meaning(record, name, part))
+        for variable in variables_of(record):
+            _add(file, *variable)
         file.flush()
         return buffer.getvalue()
 
 
-def _attributes(record: Record) -> dict[str, Any]:
+def attributes_of(record: Record) -> dict[str, Any]:
+    """Return what belongs to the whole file: title, parameters, header, scales and convention."""
     header = record.header()
     return {"title": f"{type(record).__name__} of {record.flow.title}", **header.pop("parameters"),
             **{name: "\n".join(value) if name == "notes" else value for name, value in header.items()},
             "scales": record.flow.scales, "convention": CONVENTION}
+
+
+def variables_of(record: Record) -> Iterator[tuple[str, tuple[str, ...], np.ndarray, dict[str, str]]]:
+    """Yield name, dimensions, values and attributes of every variable; complex columns are two of them."""
+    for name, values in record.columns().items():
+        for part, numbers in _real(name, values):
+            own = (part,) if part in record.dimensions else record.dimensions
+            units = {} if numbers.dtype.kind == "U" else {"units": "1"}  # the scales are an attribute of the file
+            dimensions = (*own, "maximum")[:numbers.ndim]
+            yield part, dimensions, numbers, {"long_name": _meaning(record, name, part), **units}
 
 
 def _plain(value: Any) -> Any:
@@ -75,23 +86,20 @@ def _meaning(record: Record, name: str, part: str) -> str:
     return meaning if part == name else f"{meaning}, {'real' if part.endswith('real') else 'imaginary'} part"
 
 
-def _add(file: netcdf_file, record: Record, name: str, values: np.ndarray, meaning: str) -> None:
-    """Add a variable along the dimensions of the record and one more: of maxima, or of the characters of texts."""
-    second = "maximum"
+def _add(file: netcdf_file, name: str, dimensions: tuple[str, ...], values: np.ndarray, about: dict[str, str]) -> None:
+    """Add a variable; texts have one more dimension, of their characters."""
     if values.dtype.kind == "U":
-        values, second = _characters(values), f"{name}_length"
-    own = (name,) if name in record.dimensions else record.dimensions
-    dimensions = (*own, second)[:values.ndim]
+        values, dimensions = _characters(values), (*dimensions, f"{name}_length")
     for dimension, length in zip(dimensions, values.shape, strict=True):
         if dimension not in file.dimensions:
             file.createDimension(dimension, length)
     variable = file.createVariable(name, {"f": "d", "i": "i", "S": "c"}[values.dtype.kind], dimensions)
     variable[:] = values
-    variable.long_name = meaning.encode()
+    variable.long_name = about["long_name"].encode()
     if values.dtype.kind == "S":
         variable._Encoding = b"utf-8"
     else:
-        variable.units = b"1"  # the scales are an attribute of the file
+        variable.units = about["units"].encode()
 
 
 def _characters(texts: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ The line through those is followed by arclength through the plane of k and the p
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, fields, replace
-from math import exp
+from math import exp, inf
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -18,15 +18,16 @@ from .crossings import zeros_at
 from .errors import ModeLost, NotResolved, ParameterError, naming
 from .flows.base import check_flow, span_of
 from .output import Row
+from .panels import DOTS, OTHERS, PHASE_SPEED, POINTS, WAVENUMBER, Axis, Curve, Panel, scale_of, swept_curves
 from .record import Record
 from .ridges import Landscape
 from .solver import DEGREES, TOLERANCE, check_accuracy
 from .status import inside, is_resolved
+from .symbols import axis_label, symbol_of, value_text
 from .threads import one_thread
 from .thresholds import critical_zeros
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from numpy.typing import ArrayLike
 
     from .flows import Flow
@@ -57,6 +58,9 @@ class _ZeroGrowth(Record):
     def about(self) -> dict[str, Any]:
         return {"vary": self.vary}
 
+    def _value_axis(self) -> Axis:
+        return Axis(self.vary, f"{symbol_of(self.flow, self.vary)} at zero growth")
+
 
 @dataclass(frozen=True, repr=False)
 class NeutralPoint(_ZeroGrowth):
@@ -81,11 +85,19 @@ class NeutralPoint(_ZeroGrowth):
     remark: str | None = field(default=None, repr=False)
     dimension: ClassVar[str] = "point"
 
-    def plot(self, ax: "Axes | None" = None) -> "Axes":
-        """Mark (k, value) in the matplotlib Axes `ax`, that of a `NeutralCurve` say, or in a new one; return it."""
-        from . import plots
-
-        return plots.neutral_point(self, plots.axes_or_new(ax))
+    def panels(self) -> tuple[Panel, ...]:
+        """(k, value), as in the figure of a curve, and the further values."""
+        known = [point for point in (self, *self.others) if point.k is not None and point.value is not None]
+        k, value, k_error, error = (np.array([getattr(point, name) for point in known], dtype=float)
+                                    for name in ("k", "value", "k_error", "error"))
+        status = tuple(point.status for point in known)
+        first = int(self.value is not None)
+        curves = [Curve(k[:first], value[:first], None, POINTS, k_error[:first], error[:first], None, status[:first])]
+        if len(known) > first:
+            curves.append(Curve(k[first:], value[first:], "further values", OTHERS, k_error[first:], error[first:], 0,
+                                status[first:]))
+        limits = {"xlim": (0, 2 * k.max() or 1), "ylim": sorted((0, 2 * value.max() or 1))} if known else {}
+        return (Panel(WAVENUMBER, self._value_axis(), tuple(curves), limits=limits),)
 
     def rows(self) -> list[Row]:
         return [{**{name: value for name, value in point.row().items() if name != "status"}, "k_error": point.k_error,
@@ -112,11 +124,16 @@ class NeutralCurve(_ZeroGrowth):
     settings: Mapping[str, Any] = field(default_factory=dict, compare=False)
     dimension: ClassVar[str] = "point"
 
-    def plot(self, ax: "Axes | None" = None, quantity: str = "value") -> "Axes":
-        """Draw value or phase_speed against k into the matplotlib Axes `ax`, or a new one; return it."""
-        from . import plots
-
-        return plots.neutral_curve(self, plots.axes_or_new(ax), quantity)
+    def panels(self) -> tuple[Panel, ...]:
+        """The value and the phase speed on the neutral curve against k."""
+        known = [point for point in self.points if point.value is not None]
+        status = tuple(point.status for point in known)
+        x = replace(WAVENUMBER, scale=scale_of(self.trace[:, 0]))
+        k, value, error, speed = (np.array([getattr(point, name) for point in known], dtype=float)
+                                  for name in ("k", "value", "error", "phase_speed"))
+        curve = Curve(*self.trace.T), Curve(k, value, None, DOTS, None, error, 0, status)
+        return (Panel(x, replace(self._value_axis(), scale=scale_of(self.trace[:, 1])), curve),
+                Panel(x, PHASE_SPEED, (Curve(k, speed, None, POINTS, status=status),)))
 
     def rows(self) -> list[Row]:
         return [point.row() for point in self.points]
@@ -143,11 +160,20 @@ class NeutralSweep(_ZeroGrowth):
     def swept(self) -> tuple[str | None, ...]:
         return self.over, *super().swept
 
-    def plot(self, ax: "Axes | None" = None, quantity: str = "value") -> "Axes":
-        """Draw value or k against the swept parameter into the matplotlib Axes `ax`, or a new one; return it."""
-        from . import plots
-
-        return plots.neutral_sweep(self, plots.axes_or_new(ax), quantity)
+    def panels(self) -> tuple[Panel, ...]:
+        """The value and the wavenumber of zero growth against the swept parameter."""
+        known = [point for point in self.points if point.value is not None]
+        x = [getattr(point.flow, self.over) for point in known]
+        symbol = symbol_of(self.flow, self.over)
+        scale = scale_of([getattr(point.flow, self.over) for point in self.points])
+        axis = Axis(self.over, axis_label(self.flow, self.over), scale)
+        status = tuple(point.status for point in known)
+        level = f"{symbol} = {value_text(inf)}"
+        return tuple(Panel(axis, y, swept_curves(x, [getattr(point, name) for point in known], level, status=status,
+                                                 y_error=np.array([getattr(point, bars) for point in known])))
+                     for y, name, bars in ((self._value_axis(), "value", "error"),
+                                           (replace(WAVENUMBER, label="wavenumber $k$ (0: long waves)"), "k",
+                                            "k_error")))
 
     def rows(self) -> list[Row]:
         return [{self.over: getattr(point.flow, self.over), **point.row()} for point in self.points]

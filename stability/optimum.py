@@ -1,7 +1,8 @@
 """The fastest growing wavenumber, as a result: every maximum that `stability.crests` finds, the largest first."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from math import inf
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -12,18 +13,31 @@ from .errors import ModeLost, NotResolved, naming
 from .flows.base import check_flow
 from .listing import listed
 from .output import Row
+from .panels import (
+    GROWTH_AT_K_MAX,
+    GROWTH_RATE,
+    K_MAX,
+    OTHERS,
+    POINTS,
+    WAVENUMBER,
+    Axis,
+    Curve,
+    Panel,
+    scale_of,
+    swept_curves,
+)
 from .record import Record
 from .solver import DEGREES, TOLERANCE, Assembly, Solver, check_accuracy
 from .status import STABLE, is_outgrown, is_resolved, outgrown
+from .symbols import axis_label, symbol_of, value_text
 from .threads import one_thread
 from .wellposed import faster, well_posedness
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from .flows import Flow
 
 MODES = ("surface", "leading")
+_OTHERS = "other local maxima"  # in figures
 
 
 @dataclass(frozen=True, repr=False)
@@ -63,11 +77,13 @@ class Optimum(Record):
     def phase_speed(self) -> float:
         return self.best.mode.phase_speed
 
-    def plot(self, ax: "Axes | None" = None) -> "Axes":
-        """Mark the maxima at (k, growth rate) in the matplotlib Axes `ax`, or in a new one; return it."""
-        from . import plots
-
-        return plots.maxima(self, plots.axes_or_new(ax))
+    def panels(self) -> tuple[Panel, ...]:
+        """The maxima at (k, growth rate): the largest, and the others."""
+        k, growth, error = (np.array([getattr(one, name) for one in self.maxima], dtype=float)
+                            for name in ("k", "growth_rate", "error"))
+        best = Curve(k[:1], growth[:1], None, POINTS, error[:1], status=(self.status,) * len(k[:1]))
+        others = Curve(k[1:], growth[1:], _OTHERS, OTHERS, error[1:], of=0)
+        return (Panel(WAVENUMBER, GROWTH_RATE, (best, others) if len(k) > 1 else (best,)),)
 
     def rows(self) -> list[Row]:
         numbers = {name: getattr(self, name) if self.maxima else None
@@ -111,14 +127,27 @@ class Optima(Record):
     def settings(self) -> Mapping[str, Any]:  # type: ignore[override]
         return self.optima[0].settings
 
-    def plot(self, ax: "Axes | None" = None, quantity: str = "k_max") -> "Axes":
-        """Draw k_max or growth_rate against the swept parameter into the matplotlib Axes `ax`, or a new one; return it.
-
-        Local maxima that are not the largest are drawn too.
-        """
-        from . import plots
-
-        return plots.optima(self, plots.axes_or_new(ax), quantity)
+    def panels(self) -> tuple[Panel, ...]:
+        """k_max and its growth rate against the swept parameter, with the local maxima that are not the largest."""
+        name = self.over or ""
+        symbol = symbol_of(self.flow, name) if name else ""
+        level = f"{symbol} = {value_text(inf)}"
+        x = [getattr(optimum.flow, name) if name else 0.0 for optimum in self.optima]
+        scale = scale_of(x)
+        pairs = [(value, one) for value, one in zip(x, self.optima, strict=True) if one.maxima]
+        others = [(value, one) for value, optimum in pairs for one in optimum.maxima[1:]]
+        panels = []
+        for y, field_name, bars in (K_MAX, "k", "error"), (GROWTH_AT_K_MAX, "growth_rate", None):
+            curves = swept_curves([value for value, _ in pairs],
+                                  [getattr(one.maxima[0], field_name) for _, one in pairs], level,
+                                  y_error=np.array([one.maxima[0].error for _, one in pairs]) if bars else None,
+                                  status=tuple(one.status for _, one in pairs))
+            if others:
+                curves += swept_curves([value for value, _ in others],
+                                       [getattr(one, field_name) for _, one in others], level, _OTHERS, OTHERS, of=0)
+            panels.append(Panel(Axis(name or "flow", axis_label(self.flow, name) if name else "", scale),
+                                replace(y, scale=scale if pairs else "linear"), curves))
+        return tuple(panels)
 
     def rows(self) -> list[Row]:
         return [{**self._swept(optimum), **row} for optimum in self.optima for row in optimum.rows()]

@@ -10,6 +10,7 @@ import tempfile
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import fields
+from html import escape
 from math import isinf
 from pathlib import Path
 from stat import S_ISDIR
@@ -122,6 +123,17 @@ def _table(rows, digits, gap):
     lines = zip(*([cell.ljust(width) if text else cell.rjust(width) for cell in column]
                   for column, width, text in zip(columns, widths, texts, strict=True)), strict=True)
     return "".join((" " * gap).join(line).rstrip() + "\n" for line in lines)
+
+
+def html_table(title: str, rows: list[Row], gap: int | None = None) -> str:
+    """Return rows as a table in HTML, with a row of dots after the first `gap` ones if some are left out there."""
+    digits = _LAYOUTS[0][0]
+    lines = ["".join(f"<td>{escape(_cell(key, value, digits))}</td>" for key, value in row.items()) for row in rows]
+    if gap is not None:
+        lines.insert(gap, f'<td colspan="{len(rows[0])}">...</td>')
+    head = "".join(f"<th>{escape(name)}</th>" for name in rows[0]) if rows else ""
+    body = "".join(f"<tr>{line}</tr>\n" for line in (head, *lines))
+    return f"<table>\n<caption>{escape(title)}</caption>\n{body}</table>"
 
 
 def _cell(key, value, digits):

@@ -1,84 +1,100 @@
-"""Figures of results, drawn without a display and ready for print."""
+"""The renderer: panels become figures, without a display and ready for print. It knows no result by name.
+
+Colours, line styles and markers are given out by matplotlib's cycle of the axes, so that successive results on the same
+axes differ, in grey print too, and so that a style sheet may say otherwise. Text stays text in PDF (Type 42) and SVG.
+"""
 
 from collections.abc import Sequence
-from math import isfinite
+from itertools import cycle as forever
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from cycler import cycler
 
-from .eigenfunction import Eigenfunction
-from .errors import ParameterError
-from .mode import Mode
-from .neutral import NeutralCurve, NeutralPoint, NeutralSweep
-from .optimum import Optima, Optimum
-from .relation import DispersionRelation
-from .sensitivity import Sensitivities
-from .spectra import Spectra, Spectrum
+from .look import Look
+from .panels import BARS, DOTS, LEVEL, LINE, MARKED, OTHERS, POINTS, THIN, Grid, Panel, labelled, named
+from .status import is_outgrown, is_settled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+BLUE, RED, GREEN, ORANGE, PURPLE, TEAL, BLACK = COLOURS = ("#0b4f8a", "#c0392b", "#2e8b57", "#d98200", "#7d3c98",
+                                                           "#17a2b8", "#222222")
+GREY = "#7f7f7f"
+LINES: tuple[Any, ...] = ("-", "--", "-.", ":", (0, (6, 1, 1, 1, 1, 1)), (0, (10, 2)))  # told apart in grey print
+MARKERS = "o", "s", "^", "D", "v"
+CURVES = len(COLOURS) * len(LINES)  # that differ in colour or line style
+
+
+def _cycle():
+    """All pairs of colours and line styles: their numbers have no common divisor."""
+    return cycler(**{name: list(islice(forever(values), CURVES)) for name, values in
+                     (("color", COLOURS), ("linestyle", LINES), ("marker", MARKERS))})
+
+
+FONTS: dict[Any, Any] = {"pdf.fonttype": 42, "ps.fonttype": 42, "svg.fonttype": "none"}  # text, not its outlines
 STYLE: dict[Any, Any] = {
     "figure.constrained_layout.use": True,
     "font.size": 9,
     "axes.spines.top": False,
     "axes.spines.right": False,
+    "axes.prop_cycle": _cycle(),
     "legend.frameon": False,
     "lines.linewidth": 1.4,
     "savefig.dpi": 200,
     "svg.hashsalt": "stability",
+    **FONTS,
 }
-BLUE, RED, GREY = "#0b4f8a", "#c0392b", "#7f7f7f"
+_SIZE = 6.4, 2.8  # inches, unless a Look says otherwise
+_NARROW, _SMALL = 5.0, 7  # inches of width below which the font has this size
+_ASIDE = 1.2  # ratio of width and height from which panels stand side by side
+_SEEN = 2e-3  # of the range of a curve: smaller error bars would not be seen
+_MARKED_MOST = 25  # doubtful points of a curve that are marked, at most
+_ROW = 4  # entries in a line of the legend below a figure
+_HOLLOW = {"linestyle": "", "marker": "o", "markersize": 4, "markerfacecolor": "none"}
+_SHAPES: dict[str, dict[str, Any]] = {
+    LINE: {"marker": ""}, MARKED: {"marker": ".", "markersize": 4}, POINTS: {"linestyle": "", "markersize": 4},
+    OTHERS: _HOLLOW, DOTS: {"linestyle": "", "marker": ".", "markersize": 5},
+    THIN: {"marker": "", "linestyle": "--", "linewidth": 0.8},
+}
+_DOUBTS = ((lambda status: not is_settled(status), "x", "not resolved"),
+           (is_outgrown, "+", "outgrown by an internal mode"))
 
-DISPERSION = {"growth_rate": r"growth rate $\sigma_r$", "phase_speed": r"phase speed $c_r$"}  # axis labels
-SWEEP = {"value": "at zero growth", "k": "wavenumber $k$ (0: long waves)"}
-OPTIMA = {"k_max": "$k_{max}$", "growth_rate": r"growth rate at $k_{max}$"}
-NEUTRAL = {"value": "at zero growth", "phase_speed": "phase speed $c_r$"}
 
-
-def draw(result, path):
-    """Draw the Record of a verb into the file `path`."""
+def draw(record, path, look: Look | None = None) -> list[str]:
+    """Draw the panels of a Record into the file `path`; return what there is to say of it, a sentence each."""
     import matplotlib
     from matplotlib.figure import Figure
 
-    with matplotlib.rc_context(STYLE):
-        layout: Any = "none" if _plain(result) else "constrained"
-        figure = Figure(figsize=(6.4, 2.8), layout=layout)
-        if _plain(result):
-            figure.subplots_adjust(left=0.14, right=0.98, bottom=0.18, top=0.86, wspace=0.45)
-        if hasattr(result, "axes"):
-            from .mapplots import draw_map
-
-            draw_map(result, figure)
-        else:
-            _draw_panels(result, figure)
-        figure.suptitle(_caption(result), fontsize=8, color=GREY)
+    look = look or Look()
+    panels, size = look.chosen(record.panels()), look.size or _SIZE
+    with matplotlib.rc_context({**STYLE, **({"font.size": _SMALL} if size[0] < _NARROW else {})}):
+        matplotlib.rcParams.update(dict[Any, Any](look.style) | FONTS)
+        figure = Figure(figsize=size, layout="constrained")
+        shape = (1, len(panels)) if size[0] >= _ASIDE * size[1] else (len(panels), 1)
+        axes = figure.subplots(*shape, squeeze=False).ravel().tolist()
+        for axis, panel in zip(axes, panels, strict=True):
+            draw_one(axis, panel)
+            for curve in look.overlaid(panel):
+                _curve(axis, curve, None, {})
+        notes = look.rescale(axes, panels)
+        _legends(figure, axes, panels)
+        small = matplotlib.rcParams["font.size"] - 1
+        title = {"fontsize": small, "color": GREY} if look.title is None else {"fontsize": small + 1}
+        figure.suptitle(record.title if look.title is None else look.title, **title, wrap=True)
         figure.savefig(path)
+    return notes
 
 
-def _draw_panels(result, figure):
-    if isinstance(result, (Spectrum, Spectra, Sensitivities, NeutralPoint)) or hasattr(result, "measurements"):
-        axis = figure.subplots()
-    else:
-        axes = figure.subplots(1, 2)
-    if isinstance(result, DispersionRelation):
-        _both(dispersion, result, axes, DISPERSION)
-    elif isinstance(result, NeutralCurve):
-        _both(neutral_curve, result, axes, NEUTRAL)
-    elif isinstance(result, NeutralSweep):
-        _both(neutral_sweep, result, axes, SWEEP)
-    elif isinstance(result, (Spectrum, Spectra)):
-        spectra(getattr(result, "spectra", [result]), axis)
-    elif isinstance(result, NeutralPoint):
-        neutral_point(result, axis)
-    elif isinstance(result, Sensitivities):
-        sensitivities(result, axis)
-    elif hasattr(result, "measurements"):
-        _comparison(result, axis)
-    elif isinstance(result, Optima):
-        _both(optima, result, axes, OPTIMA)
-    else:
-        _well_posedness(result.layers, result.growth, *axes)
+def plot(panels: Sequence[Any], ax: "Axes | None", quantity: str | None = None, label: str | None = None,
+         **line_options: Any) -> "Axes":
+    """Draw one of the panels into the matplotlib Axes `ax`, or into new ones; return them."""
+    axis, panel = axes_or_new(ax), named(panels, quantity)
+    draw_one(axis, panel if isinstance(panel, Grid) else labelled(panel, label), line_options)
+    if axis.get_legend_handles_labels()[1]:
+        axis.legend()
+    return axis
 
 
 def axes_or_new(axes: "Axes | None") -> "Axes":
@@ -91,194 +107,104 @@ def axes_or_new(axes: "Axes | None") -> "Axes":
         return pyplot.subplots(figsize=(4.2, 3.0))[1]
 
 
-def _both(panel, result, axes, quantities):
-    for axis, quantity in zip(axes, quantities, strict=True):
-        panel(result, axis, quantity)
+def draw_one(axis: "Axes", panel: Any, line_options: Any = None) -> None:
+    """Draw a Panel or a Grid into axes, without its legend."""
+    if isinstance(panel, Grid):
+        from .mapplots import draw_grid
+
+        draw_grid(axis, panel, line_options or {})
+    else:
+        _panel(axis, panel, line_options or {})
 
 
-def _plain(result):
-    """Two plain panels need no layout engine, which would take half the time of the drawing."""
-    return isinstance(result, (DispersionRelation, Optima))
+def _panel(axis, panel: Panel, line_options):
+    fresh = not axis.has_data()
+    if panel.zero and not any(line.get_label() == "_zero" for line in axis.lines):
+        line = axis.axhline if panel.zero == "y" else axis.axvline
+        line(0, color=GREY, linewidth=0.6, label="_zero")
+    for band in panel.bands:
+        span = axis.axhspan if band.axis == "y" else axis.axvspan
+        span(band.low, band.high, color=RED, alpha=0.15, linewidth=0)
+    colours: list[Any] = []
+    for curve in panel.curves:
+        colour = None if curve.of is None else colours[curve.of]
+        colours.append(_curve(axis, curve, colour, line_options if curve.of is None else {}))
+    axis.set(xlabel=panel.x.label, ylabel=panel.y.label)
+    if fresh:
+        for which, scale in (("x", panel.x.scale), ("y", panel.y.scale)):
+            set_scale(axis, which, scale)
+        axis.set(**panel.limits)
 
 
-def _caption(result):
-    if isinstance(result, DispersionRelation):
-        return f"{result.flow}, {result.mode} mode"
-    if hasattr(result, "axes"):
-        return result.title
-    if isinstance(result, Sensitivities) or hasattr(result, "measurements"):
-        return f"{result.flow}, k = {result.k:g}"
-    text = str(result.flow)
-    for name in filter(None, result.swept):
-        text = text.replace(f"{name}={getattr(result.flow, name)}", f"{name} varies")
-    return text
+def set_scale(axis, which, scale):
+    """Set the scale of an axis; symmetric logarithms are linear next to zero."""
+    if scale != "linear":
+        getattr(axis, f"set_{which}scale")(scale, **({"linthresh": 1e-2} if scale == "symlog" else {}))
 
 
-def _label(labels, quantity):
-    if quantity not in labels:
-        raise ParameterError(f"quantity must be one of {', '.join(labels)} (got {quantity!r})")
-    return labels[quantity]
+def _curve(axis, curve, colour, line_options):
+    """Draw a curve in a colour, or in the next one of the axes; return its colour."""
+    if curve.kind == BARS:
+        return axis.barh(curve.y, curve.x, **{"color": COLOURS[0], "label": curve.label, **line_options})[0]
+    if curve.kind == LEVEL:
+        for y in curve.y:
+            axis.axhline(y, color=colour, linestyle="--", linewidth=0.8, label=curve.label)
+        return colour
+    style: dict[str, Any] = {"label": curve.label, **_SHAPES[curve.kind]}
+    if curve.fade < 1:
+        style["alpha"] = curve.fade
+    if colour is not None:
+        style = {"linestyle": "-", "marker": "", **style, "color": colour}
+    (line,) = axis.plot(curve.x, curve.y, **{**style, **line_options})
+    if curve.kind in (POINTS, OTHERS) and line.get_marker() in ("", "None", None, " "):
+        line.set_marker("o")  # the cycle of the axes has none
+    _bars(axis, curve, line.get_color())
+    if curve.status is not None:
+        _doubts(axis, curve, line.get_color())
+    return line.get_color()
 
 
-def dispersion(relation: DispersionRelation, axis: "Axes", quantity: str) -> "Axes":
-    """Growth rate or phase speed against k."""
-    label = _label(DISPERSION, quantity)
-    order = np.argsort(relation.k)
-    k = relation.k[order]
-    axis.axhline(0, color=GREY, linewidth=0.6)
-    axis.plot(k, getattr(relation, quantity)[order], color=BLUE, marker="o" if len(k) == 1 else "")
-    axis.set(xlabel="wavenumber $k$", ylabel=label, xscale="log" if _spans_decades(k) else "linear")
-    return axis
+def _bars(axis, curve, colour):
+    """Error bars that are long enough to be seen."""
+    errors = {}
+    for name, values, bars in (("xerr", curve.x, curve.x_error), ("yerr", curve.y, curve.y_error)):
+        if bars is not None and len(values):
+            known = values[np.isfinite(values)]
+            extent = (np.ptp(known) or np.abs(known).max()) if len(known) else 0.0
+            if 0 < _SEEN * extent < np.nanmax(bars, initial=0.0):
+                errors[name] = bars
+    if errors:  # all that the cycle of the axes would give is given, or it would move on
+        axis.errorbar(curve.x, curve.y, fmt="none", ecolor=colour, elinewidth=0.8, capsize=1.5, color=colour,
+                      linestyle="", marker="", **errors)
 
 
-def spectra(found: Sequence[Spectrum], axis: "Axes") -> "Axes":
-    """Growth rates against phase speeds, a colour for each spectrum."""
-    for one in found:
-        axis.plot(one.phase_speed, one.growth_rate, "o", markersize=4, label=f"$k$ = {one.k:g}")
-    axis.axhline(0, color=GREY, linewidth=0.6)
-    axis.set(xlabel=r"phase speed $c_r$", ylabel=r"growth rate $\sigma_r$")
-    axis.legend()
-    return axis
+def _doubts(axis, curve, colour):
+    for test, marker, label in _DOUBTS:
+        where = np.array([test(status) for status in curve.status], dtype=bool)
+        if where.any():
+            told = label in axis.get_legend_handles_labels()[1]
+            every = max(1, int(where.sum()) // _MARKED_MOST)
+            axis.plot(curve.x[where], curve.y[where], linestyle="", marker=marker, markersize=5, color=colour,
+                      markevery=every, label=None if told else label)
 
 
-def maxima(optimum: Optimum, axis: "Axes") -> "Axes":
-    """The maxima at (k, growth rate), with error bars in k."""
-    for one, color in zip(optimum.maxima, (BLUE, *[RED] * len(optimum.maxima)), strict=False):
-        axis.errorbar(one.k, one.growth_rate, xerr=one.error, fmt="o", color=color, markersize=4)
-    axis.set(xlabel="wavenumber $k$", ylabel=r"growth rate $\sigma_r$")
-    return axis
+def _legends(figure, axes, panels):
+    """One legend below the figure where all panels have the same, and one in each otherwise."""
+    found = [axis.get_legend_handles_labels() for axis in axes]
+    grids = [panel for panel in panels if isinstance(panel, Grid)]
+    if grids:
+        from .mapplots import legend_of
+
+        extra = legend_of(grids[0])
+        handles, labels = [*found[0][0], *extra[0]], [*found[0][1], *extra[1]]
+    elif len(axes) > 1 and all(labels == found[0][1] for _, labels in found) and len(found[0][1]) > 1:
+        handles, labels = found[0]
+    else:
+        for axis, (_, labels) in zip(axes, found, strict=True):
+            if labels:
+                axis.legend(fontsize="small" if len(labels) > 3 else None)
+        return
+    if labels:
+        figure.legend(handles, labels, loc="outside lower center", ncols=min(len(labels), _ROW), fontsize="small")
 
 
-def optima(found: Optima, axis: "Axes", quantity: str) -> "Axes":
-    """k_max or its growth rate against the swept parameter, other local maxima as dots."""
-    label = _label(OPTIMA, quantity)
-    name, field = found.over, "k" if quantity == "k_max" else quantity
-    x = [getattr(optimum.flow, name) if name else 0.0 for optimum in found.optima]
-    pairs = list(zip(x, found.optima, strict=True))
-    others = [(value, getattr(one, field)) for value, optimum in pairs for one in optimum.maxima[1:]]
-    _against(axis, name, others, color=RED, linestyle="", label="other local maxima")
-    best = [(value, getattr(optimum.maxima[0], field)) for value, optimum in pairs if optimum.maxima]
-    _against(axis, name, best, color=BLUE)
-    scale = _scale(x)
-    axis.set(xlabel=f"${name}$" if name and len(name) < 3 else name or "", ylabel=label, xscale=scale,
-             yscale="log" if best and scale == "log" else "linear")
-    return axis
-
-
-def _against(axis, name, pairs, **style):
-    """A line with dots through (value of the swept parameter, y); y at infinity is a level."""
-    finite = [pair for pair in pairs if isfinite(pair[0])]
-    if finite:
-        axis.plot(*zip(*finite, strict=True), **{"marker": ".", "markersize": 4, **style})
-    for value, y in pairs:
-        if not isfinite(value):
-            axis.axhline(y, color=style["color"], linestyle="--", linewidth=0.8, label=f"{name} = inf")
-    if axis.get_legend_handles_labels()[0]:
-        axis.legend()
-
-
-def _scale(values):
-    finite = [value for value in values if isfinite(value)]
-    return "log" if len(finite) > 1 and min(finite) > 0 and _spans_decades(finite) else "linear"
-
-
-def mode(one: Mode, axis: "Axes") -> "Axes":
-    """|u| and |w| against z, layer by layer."""
-    for index, part in enumerate(Eigenfunction(one).profiles()):
-        for name, values, color in (("$|u|$", part.u, BLUE), ("$|w|$", part.w, RED)):
-            axis.plot(np.abs(values), part.z, color=color, label=None if index else name)
-    axis.set(xlabel=f"velocity at $k$ = {one.k:g}", ylabel="height $z$", xlim=(0, None))
-    axis.legend()
-    return axis
-
-
-def sensitivities(found: Sensitivities, axis: "Axes") -> "Axes":
-    """Relative changes of the growth rate per relative change of every parameter, as bars."""
-    rows = [row for row in found.rows() if row["elasticity"] is not None]
-    axis.barh([row["parameter"] for row in rows], [row["elasticity"] for row in rows], color=BLUE)
-    axis.axvline(0, color=GREY, linewidth=0.6)
-    axis.invert_yaxis()
-    axis.set(xlabel="elasticity of the growth rate")
-    return axis
-
-
-def _well_posedness(found, growth, left, right):
-    """C through the layers, ill-posed strips shaded; largest growth rate against k by degree."""
-    for name in dict.fromkeys(found.layer):
-        rows = np.array([layer == name for layer in found.layer])
-        left.plot(found.C[rows], found.height[rows], color=BLUE)
-    for strip in found.strips:
-        left.axhspan(strip.low, strip.high, color=RED, alpha=0.15, linewidth=0)
-    left.axvline(0, color=GREY, linewidth=0.6)
-    left.set(xlabel="$C$, ill posed where $C > 0$", ylabel="height in the layer")
-    k = [one.k for one in growth]
-    rates = np.array([one.rates for one in growth])
-    scale = {"value": "symlog", "linthresh": 1e-2}
-    for column, degree in enumerate(growth[0].degrees):
-        shade = 0.25 + 0.75 * column / (len(growth[0].degrees) - 1)
-        right.plot(k, rates[:, column], color=RED, alpha=shade, label=f"degree {degree}")
-    surface = [(one.k, one.surface) for one in growth if one.surface is not None]
-    if surface:
-        right.plot(*zip(*surface, strict=True), color=BLUE, linestyle="--", label="surface mode")
-    right.axhline(0, color=GREY, linewidth=0.6)
-    right.set_xscale("log")
-    right.set_yscale(**scale)
-    right.set(xlabel="wavenumber $k$", ylabel=r"largest growth rate $\sigma_r$")
-    right.legend(fontsize=7)
-
-
-def _comparison(found, axis):
-    """Relative error against time, a curve for each method; dashed what it reports."""
-    scale = abs(found.reference.sigma)
-    floor = np.finfo(float).eps / 2  # errors below are drawn there
-    colors = {"collocation": BLUE, "bvp": RED, "bvp-thesis": "#d98200", "dense": GREY}
-    for method, color in colors.items():
-        rows = [one for one in found.measurements if one.method == method]
-        seconds = [one.seconds for one in rows]
-        if rows:
-            error = np.maximum([one.error / scale for one in rows], floor)
-            axis.loglog(seconds, error, ".-", color=color, label=method)
-        if rows and rows[0].reported is not None:
-            reported = np.maximum([one.reported / scale for one in rows], floor)
-            axis.loglog(seconds, reported, "--", color=color, linewidth=0.8)
-    axis.set(xlabel="CPU seconds per eigenvalue", ylabel="relative error (dashed: reported)")
-    axis.legend()
-
-
-def _spans_decades(values):
-    return len(values) > 0 and max(values) > 20 * min(values)
-
-
-def neutral_curve(curve: NeutralCurve, axis: "Axes", quantity: str) -> "Axes":
-    """The parameter at zero growth or the phase speed there against k."""
-    label = _label(NEUTRAL, quantity)
-    known = [(point.k, getattr(point, quantity)) for point in curve.points if point.value is not None]
-    k, value = curve.trace.T
-    if quantity == "value":
-        axis.plot(k, value, color=BLUE)
-        axis.set_yscale("log" if _spans_decades(value) else "linear")
-        label = f"{curve.vary} {label}"
-    axis.plot(*np.array(known, dtype=float).reshape(-1, 2).T, ".", color=BLUE, markersize=5)
-    axis.set(xlabel="wavenumber $k$", ylabel=label, xscale="log" if _spans_decades(k) else "linear")
-    return axis
-
-
-def neutral_point(point: NeutralPoint, axis: "Axes") -> "Axes":
-    """The point at (k, value), as in the figure of a curve, with error bars."""
-    if point.k is not None and point.value is not None:
-        if not axis.has_data():  # error bars are no scale for a point alone
-            axis.set(xlim=(0, 2 * point.k or 1), ylim=sorted((0, 2 * point.value or 1)))
-        axis.errorbar(point.k, point.value, xerr=point.k_error, yerr=point.error, fmt="o", color=RED, markersize=5)
-    axis.set(xlabel="wavenumber $k$", ylabel=f"{point.vary} {NEUTRAL['value']}")
-    return axis
-
-
-def neutral_sweep(found: NeutralSweep, axis: "Axes", quantity: str) -> "Axes":
-    """The parameter at zero growth or the wavenumber there against the swept parameter."""
-    label, name = _label(SWEEP, quantity), found.over
-    x = [getattr(point.flow, name) for point in found.points]
-    known = [(value, getattr(point, quantity)) for value, point in zip(x, found.points, strict=True)
-             if point.value is not None]
-    _against(axis, name, known, color=BLUE)
-    axis.set(xlabel=name, ylabel=f"{found.vary} {label}" if quantity == "value" else label, xscale=_scale(x))
-    return axis

@@ -1,20 +1,28 @@
-"""What every result can do: print itself as a short table, write itself to a file."""
+"""What every result can do: print and draw itself, write itself to a file, be a sequence of its rows."""
 
 import os
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .output import Row, header_of, render, table, whole_file
+from .output import Row, header_of, html_table, render, table, whole_file
 from .status import is_resolved, is_stable
+from .symbols import title_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _HEAD, _TAIL = 4, 2  # rows shown of a long table
 Target = str | os.PathLike[str]
 
 
 class Record:
-    """Base of the results: frozen dataclasses with a `flow`. A subclass gives its `rows` and `dimension`."""
+    """Base of the results: frozen dataclasses with a `flow`. A subclass gives its `rows`, `dimension` and `panels`.
+
+    A result is a sequence of its rows: `len(result)`, `result[0]`, `result[-3:]`, `for row in result`; the name of a
+    column gives that as an array, `result["growth_rate"]`.
+    """
 
     flow: Any
     method: str = "collocation"
@@ -56,6 +64,31 @@ class Record:
         """Return what the result was asked for besides the flow, {name: text or number}."""
         return {}
 
+    @property
+    def title(self) -> str:
+        """The flow and its fixed parameters as symbols, above a figure."""
+        return title_of(self.flow, self.swept) + self.subtitle
+
+    @property
+    def subtitle(self) -> str:
+        """What the title of a figure adds to the flow."""
+        return ""
+
+    def panels(self) -> tuple[Any, ...]:
+        """Return what a figure of the result shows, a `stability.panels.Panel` (or Grid) for each quantity."""
+        raise NotImplementedError
+
+    def plot(self, ax: "Axes | None" = None, quantity: str | None = None, *, label: str | None = None,
+             **line_options: Any) -> "Axes":
+        """Draw one quantity (the first of `panels`, by default) into the matplotlib Axes `ax`, or a new one; return it.
+
+        Successive results on the same axes take successive colours. `line_options` are those of matplotlib's lines
+        (color, linestyle, linewidth ...). Raises ParameterError, with the names there are, for another quantity.
+        """
+        from . import plots
+
+        return plots.plot(self.panels(), ax, quantity, label, **line_options)
+
     def header(self) -> dict[str, Any]:
         """Return flow, fixed parameters, method, version, what was asked for, settings, and notes if there are any."""
         return header_of(self.flow, self.method, {**self.about(), **self.settings}, self.notes(), self.swept)
@@ -74,6 +107,35 @@ class Record:
 
         self._write(path, "to_netcdf", encode(self))
 
+    def to_pandas(self) -> Any:
+        """Return the rows as a pandas DataFrame, the header in its `attrs`; raises ImportError without pandas."""
+        from .frames import to_pandas
+
+        return to_pandas(self)
+
+    def to_xarray(self) -> Any:
+        """Return what a netCDF file holds as an xarray Dataset; raises ImportError without xarray."""
+        from .frames import to_xarray
+
+        return to_xarray(self)
+
+    def __len__(self) -> int:
+        return len(self.rows())
+
+    def __bool__(self) -> bool:
+        return True
+
+    def __iter__(self) -> Iterator[Row]:
+        return iter(self.rows())
+
+    def __getitem__(self, place: Any) -> Any:
+        if not isinstance(place, str):
+            return self.rows()[place]
+        columns = self.columns()
+        if place not in columns:
+            raise KeyError(f"{place}; there are {', '.join(columns)}")
+        return columns[place]
+
     def _write(self, path: Target, name: str, content: bytes) -> None:
         with whole_file(path, name) as temporary:
             temporary.write_bytes(content)
@@ -82,18 +144,28 @@ class Record:
         """The rows that `repr` shows: those that cost nothing to compute."""
         return self.rows()
 
-    def __repr__(self) -> str:
-        rows = self._summary()
+    def _heading(self, rows: list[Row]) -> str:
         resolved, stable = (sum(test(row["status"]) for row in rows) for test in (is_resolved, is_stable))
         about = "".join(f", {name} {value}" for name, value in self.about().items())
         title = f"{type(self).__name__} of {self.flow}{about}: {resolved} of {len(rows)} resolved"
-        title += f", {stable} stable" if stable else ""
+        return title + (f", {stable} stable" if stable else "")
+
+    def __repr__(self) -> str:
+        rows = self._summary()
+        title = self._heading(rows)
         if not rows:
             return title
         if len(rows) <= _HEAD + _TAIL + 1:
             return f"{title}\n{table(rows)}".rstrip()
         lines = table(rows[:_HEAD] + rows[-_TAIL:]).splitlines()
         return "\n".join([title, *lines[:_HEAD + 1], "...", *lines[_HEAD + 1:]])
+
+    def _repr_html_(self) -> str:
+        """The same as a table of a notebook."""
+        rows = self._summary()
+        if len(rows) <= _HEAD + _TAIL + 1:
+            return html_table(self._heading(rows), rows)
+        return html_table(self._heading(rows), rows[:_HEAD] + rows[-_TAIL:], _HEAD)
 
 
 def columns_of(rows: list[Row]) -> dict[str, np.ndarray]:

@@ -16,6 +16,7 @@ from .listing import leading_modes, listed
 from .memory import branch_of
 from .mode import Mode, require
 from .output import Row
+from .panels import GROWTH_RATE, LINE, PHASE_SPEED, POINTS, WAVENUMBER, Curve, Panel, scale_of
 from .record import Record
 from .solver import DEGREES, TOLERANCE, Solver, check_accuracy
 from .status import INTERRUPTED, is_resolved, outgrown
@@ -23,7 +24,6 @@ from .threads import one_thread
 from .tracking import Collision, Encounter
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from numpy.typing import ArrayLike
 
     from .flows import Flow
@@ -63,11 +63,21 @@ class DispersionRelation(Eigenvalues, Record):
         """d sigma / dk."""
         return self._of_each("slope")
 
-    def plot(self, ax: "Axes | None" = None, quantity: str = "growth_rate") -> "Axes":
-        """Draw growth_rate or phase_speed against k into the matplotlib Axes `ax`, or a new one; return it."""
-        from . import plots
+    @property
+    def subtitle(self) -> str:
+        return f"; {self.mode} mode"
 
-        return plots.dispersion(self, plots.axes_or_new(ax), quantity)
+    def panels(self) -> tuple[Panel, ...]:
+        """Growth rate and phase speed against k."""
+        modes = sorted(self.modes, key=lambda mode: mode.k)
+        k, error = (np.array([getattr(mode, name) for mode in modes], dtype=float) for name in ("k", "error"))
+        told = {row["k"]: row["status"] for row in self.rows()}
+        status = tuple(told.get(mode.k, mode.status) for mode in modes)
+        x = replace(WAVENUMBER, scale=scale_of(k))
+        kind = LINE if len(k) > 1 else POINTS
+        return tuple(Panel(x, y, (Curve(k, np.array([getattr(mode, y.name) for mode in modes]), kind=kind,
+                                        y_error=bars, status=status),), zero="y" if y is GROWTH_RATE else "")
+                     for y, bars in ((GROWTH_RATE, error), (PHASE_SPEED, error / k)))
 
     def rows(self) -> list[Row]:
         rows, faster = [self._row(k, mode) for k, mode in self._points()], self._outgrown

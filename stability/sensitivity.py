@@ -7,7 +7,7 @@ step 1e-5), before anything cancels, so the result is good to 7 digits or more: 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from math import isinf, prod
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -16,14 +16,12 @@ from .eigenfunction import sharpened
 from .errors import ParameterError
 from .mode import Mode
 from .output import Row
+from .panels import BARS, ELASTICITY, PARAMETER, Curve, Panel
 from .record import Record
 from .solver import Solver
 from .status import NO_DERIVATIVE, is_resolved
+from .symbols import symbol_of, value_text
 from .system import System
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 _STEP = 1e-5
 _STENCILS = {-1: -0.5, 1: 0.5}, {0: -1.5, 1: 2.0, 2: -0.5}, {0: 1.5, -1: -2.0, -2: 0.5}  # offsets: weights
@@ -59,11 +57,17 @@ class Sensitivities(Record):
     def k(self) -> float:
         return self.mode.k
 
-    def plot(self, ax: "Axes | None" = None) -> "Axes":
-        """Draw the elasticities as bars into the matplotlib Axes `ax`, or a new one; return it."""
-        from . import plots
+    @property
+    def subtitle(self) -> str:
+        return f"; $k$ = {value_text(self.k)}"
 
-        return plots.sensitivities(self, plots.axes_or_new(ax))
+    def panels(self) -> tuple[Panel, ...]:
+        """Relative changes of the growth rate per relative change of every parameter, as bars."""
+        rows = [row for row in self.rows() if row["elasticity"] is not None]
+        names = ["$k$" if row["parameter"] == "k" else symbol_of(self.flow, row["parameter"]) for row in rows]
+        bars = Curve(np.array([row["elasticity"] for row in rows]), np.array(names), kind=BARS)
+        return (Panel(ELASTICITY, PARAMETER, (bars,), zero="x",
+                      limits={"ylim": (len(rows) - 0.5, -0.5)}),)
 
     def rows(self) -> list[Row]:
         """Return a row of each parameter; `elasticity` is the relative change of the growth rate for its own."""

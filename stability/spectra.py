@@ -13,14 +13,13 @@ from .flows.base import check_flow
 from .listing import listed
 from .mode import Mode, require
 from .output import Row
+from .panels import GROWTH_RATE, PHASE_SPEED, POINTS, Curve, Panel
 from .record import Record
 from .solver import DEGREES, TOLERANCE, Solver, check_accuracy
 from .status import INTERRUPTED
 from .threads import one_thread
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from .flows import Flow
 
 MOST = 200  # modes that can be asked for
@@ -42,11 +41,8 @@ class Spectrum(Eigenvalues, Record):
     doubt: str | None = None
     dimension: ClassVar[str] = "mode"
 
-    def plot(self, ax: "Axes | None" = None) -> "Axes":
-        """Draw growth rates against phase speeds into the matplotlib Axes `ax`, or a new one; return it."""
-        from . import plots
-
-        return plots.spectra([self], plots.axes_or_new(ax))
+    def panels(self) -> tuple[Panel, ...]:
+        return _panels([self])
 
     def rows(self) -> list[Row]:
         """Return a row of each mode; `condition` is the condition number of the eigenvalue in the energy norm."""
@@ -84,11 +80,8 @@ class Spectra(Record):
     def settings(self) -> Mapping[str, Any]:  # type: ignore[override]
         return self.spectra[0].settings
 
-    def plot(self, ax: "Axes | None" = None) -> "Axes":
-        """Draw growth rates against phase speeds, a colour for each wavenumber, into `ax` or new Axes; return them."""
-        from . import plots
-
-        return plots.spectra(self.spectra, plots.axes_or_new(ax))
+    def panels(self) -> tuple[Panel, ...]:
+        return _panels(self.spectra)
 
     def rows(self) -> list[Row]:
         rows = [row for one in self.spectra for row in one.rows()]
@@ -96,6 +89,13 @@ class Spectra(Record):
 
     def notes(self) -> list[str]:
         return _notes(self.spectra)
+
+
+def _panels(spectra):
+    """Growth rates against phase speeds, a curve for each wavenumber."""
+    curves = [Curve(one.phase_speed, one.growth_rate, f"$k$ = {one.k:g}", POINTS, one.error / one.k, one.error,
+                    status=one.status) for one in spectra]
+    return (Panel(PHASE_SPEED, GROWTH_RATE, tuple(curves), zero="y"),)
 
 
 def _notes(spectra):

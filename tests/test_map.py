@@ -494,7 +494,7 @@ def test_the_record_prints_writes_and_draws_itself(tmp_path, small, capsys):
         assert ours.read_bytes() == theirs.read_bytes()
     axis = Figure().subplots()
     assert small.plot(axis, "phase_speed") is axis
-    assert (axis.get_xlabel(), axis.get_ylabel()) == ("Re", "shields")
+    assert (axis.get_xlabel(), axis.get_ylabel()) == (r"$\mathrm{Re}$", r"$\theta$")
 
 
 @pytest.mark.parametrize("words", [("--over", "Re=0.1:100:3"), ("--over", "shields=1.02,2", "--over", "Re=10,3e3"),

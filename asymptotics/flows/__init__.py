@@ -2,6 +2,8 @@
 
     SUMMARY      one line
     PARAMETERS   tuple of `Parameter`
+    DEFAULTS     {name of a parameter: text}, what it is where numbers are asked for and none is given
+    LATEX        {name of a parameter: how it is printed}; of an angle the name without _deg, of a square its root
     REGIMES      {name: Regime}
 
 and nothing else needs to know about it.
@@ -80,8 +82,9 @@ def regime_for(flow, name: str | None, values: Mapping) -> str:
     raise BadParameter(reasons[0])
 
 
-def expand(flow_name: str, regime: str | None = None, order: Any = None, **values: Any) -> Expansion:
-    """Expansion of sigma for a flow; parameters that are not given stay symbols.
+def expand(flow_name: str, regime: str | None = None, order: Any = None, *, numbers: bool = False,
+           **values: Any) -> Expansion:
+    """Expansion of sigma for a flow; parameters that are not given stay symbols, or with `numbers` are the defaults.
 
     >>> expand("vortex", slope_deg=45).coefficient(2)
     -2/5
@@ -94,6 +97,9 @@ def expand(flow_name: str, regime: str | None = None, order: Any = None, **value
     exact = {name: known[name].read(value) for name, value in values.items()}
     chosen = regime_for(flow, regime, exact)
     limit = flow.REGIMES[chosen]
+    if numbers:
+        exact = {name: known[name].read(flow.DEFAULTS[name]) for name in limit.parameters
+                 if name in flow.DEFAULTS} | exact
     beforehand = {name: exact[name] for name in limit.numbers if name in exact}
     expansion = replace(limit.expand(_power(order, chosen, limit), **beforehand), step=limit.step)
     return expansion.with_parameters(**{name: value for name, value in exact.items() if name in limit.parameters})

@@ -32,6 +32,10 @@ PARAMETERS = (
     Parameter("kappa", "k/sqrt(Re) (regime small-Re only)", sp.Integer(0), remedy="give a positive number"),
 )
 
+DEFAULTS = {"shields": "2", "mu1": "0.4", "b": "1", "Re": "10", "depth": "inf"}
+LATEX = {"shields": r"\theta", "mu1": r"\mu_1", "Re": r"\mathrm{Re}", "depth": "h", "kappa": r"\kappa",
+         "delta": r"\delta"}
+
 r, mu1, b, shields, xi = sp.symbols("r mu1 b shields xi", positive=True)
 R = sp.Symbol("R")
 _LOGS = sp.symbols("log_0 log_1")

@@ -25,6 +25,9 @@ PARAMETERS = (
               remedy="surface tension is not negative: give 0 or more"),
 )
 
+DEFAULTS = {"Re": "10", "slope_deg": "30", "We": "0"}
+LATEX = {"Re": r"\mathrm{Re}", "slope": r"\alpha", "We": r"\mathrm{We}"}
+
 Re, We = sp.symbols("Re We", positive=True)
 cot_slope = sp.Symbol("cot_slope")
 

@@ -26,6 +26,9 @@ PARAMETERS = (
     Parameter("mu2", "friction of rapid flow", sp.Integer(0), remedy="a friction coefficient is positive"),
 )
 
+DEFAULTS = {"slope_deg": "28", "Fr2": "4", "mu1": "0.3818628674187188", "mu2": "0.6434683848584607"}
+LATEX = {"slope": r"\alpha", "Fr": r"\mathrm{Fr}", "mu1": r"\mu_1", "mu2": r"\mu_2"}
+
 e0 = sp.Symbol("e0", positive=True)
 zeta = sp.Symbol("zeta", positive=True)
 _E0 = (mu2 - tan_slope) * (tan_slope - mu1) / (mu2 - mu1)

@@ -33,6 +33,11 @@ PARAMETERS = (
               remedy="surface tension is not negative: give 0 or more"),
 )
 
+DEFAULTS = {"viscosity_ratio": "2", "depth_ratio": "1", "density_ratio": "1", "Re": "10", "gravity": "0",
+            "tension": "0"}
+LATEX = {"viscosity_ratio": "m", "depth_ratio": "n", "density_ratio": "r", "Re": r"\mathrm{Re}", "gravity": "g",
+         "tension": "S"}
+
 RATIOS = tuple(parameter.name for parameter in PARAMETERS[:3])
 SYMBOLS = m, n, density, Re, gravity, tension = tuple(parameter.symbol for parameter in PARAMETERS)
 _SCALE = {"n": -1}

@@ -25,6 +25,9 @@ PARAMETERS = (
               remedy="the pressure condition needs a positive pressure; without it use --regime long-wave"),
 )
 
+DEFAULTS = {"slope_deg": "30", "Fr2": "0.1"}
+LATEX = {"slope": r"\alpha", "Fr": r"\mathrm{Fr}", "delta": r"\delta"}
+
 tan_slope, Fr2, mu1, mu2 = sp.symbols("tan_slope Fr2 mu1 mu2", positive=True)
 delta = sp.Symbol("delta", positive=True)
 zeta = sp.Symbol("zeta", positive=True)

@@ -14,13 +14,15 @@ _INSET, _AROUND = 1e-3, 100.0  # of a bounded range left out at its ends; factor
 
 
 def parameter(default: float, low: float | None = None, high: float | None = None, *, meaning: str, reason: str = "",
-              closed: bool = False, unbounded: bool = False, look: tuple[float, float] | None = None) -> Any:
+              closed: bool = False, unbounded: bool = False, look: tuple[float, float] | None = None,
+              symbol: str | None = None) -> Any:
     """Declare a numeric parameter with its open range low < value < high, its meaning and the reason.
 
     `closed` admits `low` itself as a value, `unbounded` admits inf. Neutral values are looked for in the range `look`.
+    `symbol` is what figures call it, in TeX, if that is not its name.
     """
     return field(default=default, metadata={"low": low, "high": high, "meaning": meaning, "reason": reason,
-                                            "closed": closed, "unbounded": unbounded, "look": look})
+                                            "closed": closed, "unbounded": unbounded, "look": look, "symbol": symbol})
 
 
 def choice(*options: str, meaning: str) -> Any:

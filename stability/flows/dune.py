@@ -26,14 +26,14 @@ class Dune(Flow):
                              "Re: fluid shear rate * d^2 / viscosity; depth: fluid depth / d")
     surfaces: ClassVar[tuple[str, ...]] = ("s0",)
 
-    shields: float = parameter(2.0, 1, look=(1.01, 20.0),
+    shields: float = parameter(2.0, 1, look=(1.01, 20.0), symbol=r"\theta",
                                meaning="fluid shear stress over the yield stress of the bed, thesis (4.54)",
                                reason="at or below 1 the bed does not yield")
     mu1: float = parameter(0.4, 0, look=(0.05, 2.0), meaning="static friction coefficient, thesis (4.48)")
     b: float = parameter(1.0, 0, look=(0.05, 20.0), meaning="rate coefficient of friction mu1 (1 + b I), thesis (4.48)")
     Re: float = parameter(10.0, 0, look=(1e-3, 1e4),
                           meaning="Reynolds number of the fluid on the grain scale, thesis (4.39)")
-    depth: float = parameter(inf, 0, look=(0.1, 1e3),
+    depth: float = parameter(inf, 0, look=(0.1, 1e3), symbol="h",
                              meaning="fluid depth in grain diameters; inf: unbounded fluid", unbounded=True)
     fluid: str = choice("closed-form", "layer", meaning="wall stress in closed form, or a second layer")
 

@@ -23,7 +23,7 @@ class Film(Flow):
     surfaces: ClassVar[tuple[str, ...]] = ("s0",)
 
     Re: float = parameter(10.0, 0, look=(1e-3, 2e4), meaning="Reynolds number of depth and surface speed")
-    slope_deg: float = parameter(30.0, 0, 180, look=(5e-3, 175.0),
+    slope_deg: float = parameter(30.0, 0, 180, look=(5e-3, 175.0), symbol=r"\alpha",
                                  meaning="inclination of the plane, degrees; beyond 90 the film hangs")
     We: float = parameter(0.0, 0, closed=True, look=(1e-5, 1e3),
                           meaning="surface tension / (density * surface speed^2 * depth)")

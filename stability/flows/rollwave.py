@@ -26,9 +26,10 @@ class RollWave(Flow):
                              "Forterre's Froude number, mean speed / sqrt(g h cos slope): 0.4 sqrt(Fr2)")
     surfaces: ClassVar[tuple[str, ...]] = ("s0",)
 
-    slope_deg: float = parameter(28.0, 0, 90, look=(1.0, 89.0),
+    slope_deg: float = parameter(28.0, 0, 90, look=(1.0, 89.0), symbol=r"\alpha",
                                  meaning="inclination of the plane, degrees, between those of mu1 and mu2")
-    Fr2: float = parameter(4.0, 0, look=(1e-3, 1e3), meaning="squared Froude number, thesis (4.6)")
+    Fr2: float = parameter(4.0, 0, look=(1e-3, 1e3), symbol=r"\mathrm{Fr}^2",
+                           meaning="squared Froude number, thesis (4.6)")
     mu1: float = parameter(tan(radians(20.9)), 0, look=(0.05, 2.0), meaning="friction at rest")
     mu2: float = parameter(tan(radians(32.76)), 0, look=(0.05, 2.0), meaning="friction of rapid flow")
 

@@ -27,8 +27,10 @@ class Vortex(Flow):
     decays: ClassVar[bool] = True  # nothing feeds the energy of motion and raised surface
     surfaces: ClassVar[tuple[str, ...]] = ("s0",)
 
-    slope_deg: float = parameter(30.0, 0, 90, look=(1.0, 89.0), meaning="inclination of the plane, degrees")
-    Fr2: float = parameter(0.1, 0, look=(1e-3, 1e3), meaning="squared Froude number, thesis (4.6)")
+    slope_deg: float = parameter(30.0, 0, 90, look=(1.0, 89.0), symbol=r"\alpha",
+                                 meaning="inclination of the plane, degrees")
+    Fr2: float = parameter(0.1, 0, look=(1e-3, 1e3), symbol=r"\mathrm{Fr}^2",
+                           meaning="squared Froude number, thesis (4.6)")
 
     def layers(self, names):
         return (Layer("grains", lambda s: profile(s, self.mu, self.Fr2)),)

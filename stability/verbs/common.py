@@ -15,18 +15,13 @@ from ..specs import parse_spec
 from ..status import INTERRUPTED, is_settled
 from ..streams import output_closed, say
 from . import VERBS
+from .plotting import look_of, plot_options
 from .progress import Bar
 
 SPEC = "a number, a list a,b,c, or a range a:b:n (log-spaced) or a:b:n:lin"
 INTERRUPTED_STATUS = 130  # of the command
 FORMS = {".csv": "csv", ".json": "json", ".nc": "netcdf"}  # that the ending of a file stands for
-_FOREIGN = {  # endings of forms that we do not write: a table under such a name would mislead
-    ".xls", ".xlsx", ".ods", ".tsv", ".h5", ".hdf", ".hdf5", ".cdf", ".nc4", ".parquet", ".feather", ".arrow", ".orc",
-    ".avro", ".npy", ".npz", ".mat", ".pkl", ".pickle", ".zarr", ".db", ".sqlite", ".sqlite3", ".jsonl", ".ndjson",
-    ".xml", ".yaml", ".yml", ".toml", ".htm", ".html", ".md", ".tex", ".doc", ".docx", ".dta", ".sav", ".rds",
-    ".fits", ".vtk", ".vtu", ".png", ".pdf", ".svg", ".jpg", ".jpeg", ".gif", ".eps", ".ps", ".tif", ".tiff", ".webp",
-    ".zip", ".gz", ".bz2", ".xz", ".zst", ".tar",
-}
+_TEXT = "", ".txt"  # endings of a table
 _PLOTS = (".png", ".pdf", ".svg")
 FLOW = f"one of {', '.join(FLOWS)}, or your own: path/to/file.py:Class or package.module:Class"
 _NUMBER = "V"  # metavar of a numeric parameter of a flow
@@ -38,7 +33,8 @@ def add_verb(verbs, name, run, example, *options):
     """Add a verb that takes a flow, its parameters, the common options and whatever `options` add."""
     summary = VERBS[name]
     verb = verbs.add_parser(name, help=summary, description=summary[0].upper() + summary[1:] + ".",
-                            epilog=f"example: {example}", add_help=False)
+                            epilog=f"example: {example}", add_help=False,
+                            usage=f"stability {name} FLOW [options]")
     verb.add_argument("flow", metavar="FLOW", help=FLOW)
     for option in options:
         option(verb)
@@ -47,7 +43,7 @@ def add_verb(verbs, name, run, example, *options):
     form.add_argument("--json", dest="form", action="store_const", const="json", help="JSON")
     verb.add_argument("-o", "--output", metavar="FILE",
                       help="write there instead of standard output; .csv, .json and .nc (netCDF) in that form")
-    verb.add_argument("--plot", metavar="FILE", help="draw the result: .png, .pdf or .svg")
+    plot_options(verb)
     verb.add_argument("--quiet", action="store_true", help="no progress and no warnings on standard error")
     verb.add_argument("-h", "--help", action="help", help="show this help and exit")
     verb.set_defaults(run=run, form="table", complete=_add_parameters)
@@ -65,7 +61,8 @@ class Once(argparse.Action):
 
     def _remedy(self, parser, *values):
         if self.metavar == _NUMBER:
-            sweep = "--over" if "--over" in parser.format_usage() else "stability map --over"
+            known = [option for option in ("--over", "--each") if option in parser._option_string_actions]
+            sweep = known[0] if known else "stability map --over"
             return f"sweep it with: {sweep} {self.dest.partition(' ')[2]}={','.join(values)}"
         return _REMEDIES.get(str(self.metavar), "give it once")
 
@@ -142,16 +139,16 @@ def sweep_of(arguments, flow):
     return name, [replace(flow, **{name: value}) for value in values]
 
 
-def swept_values(text, flow):
+def swept_values(text, flow, option="--over"):
     """The parameter and its values of NAME=SPEC."""
     name, _, spec = text.partition("=")
     name = name.replace("-", "_")
     known = [item.name for item in fields(flow) if "options" not in item.metadata]
     if name not in known:
-        raise ParameterError(f"--over: {flow.name} has no parameter {name!r}{nearest(name, known)}; "
+        raise ParameterError(f"{option}: {flow.name} has no parameter {name!r}{nearest(name, known)}; "
                              f"it has {', '.join(known)}")
     (item,) = (item for item in fields(flow) if item.name == name)
-    return name, parse_spec(spec, f"--over {name}", False, item.metadata["unbounded"]).tolist()
+    return name, parse_spec(spec, f"{option} {name}", False, item.metadata["unbounded"]).tolist()
 
 
 def options_of(arguments):
@@ -188,7 +185,8 @@ def report(arguments, compute):
         from ..plots import draw  # matplotlib takes longer to import than most results to compute
 
         with whole_file(arguments.plot, "--plot") as temporary:
-            draw(result, temporary)
+            for note in draw(result, temporary, look_of(arguments)):
+                say(f"stability: {note}")
     return INTERRUPTED_STATUS if missing else 3 if failed else 0
 
 
@@ -204,13 +202,14 @@ def check_files(arguments):
         check_writable(arguments.plot, "--plot")
         if arguments.output is not None and os.path.realpath(arguments.output) == os.path.realpath(arguments.plot):
             raise ParameterError(f"--plot: {arguments.plot!r} is the file of -o too; give each its own")
+    look_of(arguments)
     return form_of(arguments)
 
 
 def form_of(arguments):
     """The form asked for, or the one that the ending of the file stands for."""
     ending = Path(arguments.output or "").suffix.lower()
-    if ending in _FOREIGN:
+    if ending not in (*FORMS, *_TEXT):
         raise ParameterError(f"-o: {ending} cannot be written; {', '.join(FORMS)} are known, .txt and no ending give a "
                              f"table (got {arguments.output!r})")
     form = FORMS.get(ending, arguments.form)

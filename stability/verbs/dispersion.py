@@ -6,13 +6,14 @@ from ..errors import ParameterError
 from ..relation import MODES, DispersionRelation, default_mode, dispersion_parts, joined
 from ..specs import parse_spec
 from ..status import INTERRUPTED
-from .common import accuracy_options, add_verb, collect, flow_of, k_option, options_of, report
+from .common import accuracy_options, add_verb, collect, k_option, options_of
+from .families import answer, each_option
 from .methods import method_of, method_options, settings_of
 
 
 def add(verbs):
     add_verb(verbs, "dispersion", _run, "stability dispersion dune --Re 100 --k 1e-2:10:50 --plot dune.png",
-             k_option, _mode_option, method_options, accuracy_options)
+             k_option, each_option, _mode_option, method_options, accuracy_options)
 
 
 def _mode_option(verb):
@@ -21,24 +22,27 @@ def _mode_option(verb):
 
 
 def _run(arguments):
-    flow, options = flow_of(arguments), options_of(arguments)
+    options = options_of(arguments)
     wavenumbers = parse_spec(arguments.k, "--k")
-    arguments.mode = arguments.mode or default_mode(flow)
-    if arguments.mode not in MODES:
+    if arguments.mode is not None and arguments.mode not in MODES:
         raise ParameterError(f"--mode: must be one of {', '.join(MODES)} (got {arguments.mode!r})")
+    return answer(arguments, lambda flow: _question(arguments, flow, wavenumbers, options))
+
+
+def _question(arguments, flow, wavenumbers, options):
+    mode = arguments.mode or default_mode(flow)
     bvp = method_of(arguments, flow, options["tolerance"])
-    if bvp and arguments.mode != MODES[0]:
-        raise ParameterError(f"--mode {arguments.mode}: --method {arguments.method} follows the surface mode only")
+    if bvp and mode != MODES[0]:
+        raise ParameterError(f"--mode {mode}: --method {arguments.method} follows the surface mode only")
 
     def compute():
-        parts = _continued(flow, wavenumbers, **bvp) if bvp else \
-            dispersion_parts(flow, wavenumbers, arguments.mode, **options)
-        missing = DispersionRelation(flow, arguments.mode, (), dict.fromkeys(wavenumbers.tolist(), INTERRUPTED), ())
+        parts = _continued(flow, wavenumbers, **bvp) if bvp else dispersion_parts(flow, wavenumbers, mode, **options)
+        missing = DispersionRelation(flow, mode, (), dict.fromkeys(wavenumbers.tolist(), INTERRUPTED), ())
         found = collect(arguments, parts, len(wavenumbers), lambda done: [missing], lambda part: len(part.modes))
         return replace(joined(found, wavenumbers.tolist()), method=arguments.method,
                        settings=settings_of(bvp, options))
 
-    return report(arguments, compute)
+    return compute
 
 
 def _continued(flow, wavenumbers, **bvp):

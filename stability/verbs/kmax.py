@@ -3,15 +3,15 @@
 from ..errors import ParameterError, StabilityError
 from ..optimum import MODES, Optima, Optimum, k_max_sweep
 from ..status import INTERRUPTED
-from .common import SPEC, accuracy_options, add_verb, collect, flow_of, options_of, report, sweep_of
+from .common import SPEC, accuracy_options, add_verb, collect, options_of, sweep_of
 from .critical import search_option, searched
+from .families import answer, each_option
 from .methods import method_of, method_options, settings_of
 
 
 def add(verbs):
     add_verb(verbs, "kmax", _run, "stability kmax dune --over Re=0.1:1e4:41 --plot kmax.png",
-             _over_option, _mode_option, search_option,
-             method_options, accuracy_options)
+             _over_option, each_option, _mode_option, search_option, method_options, accuracy_options)
 
 
 def _over_option(verb):
@@ -24,12 +24,15 @@ def _mode_option(verb):
 
 
 def _run(arguments):
-    flow, options = flow_of(arguments), options_of(arguments)
     if arguments.mode and arguments.mode not in MODES:
         raise ParameterError(f"--mode: must be one of {', '.join(MODES)} (got {arguments.mode!r})")
+    options = options_of(arguments)
+    return answer(arguments, lambda flow: _question(arguments, flow, options))
+
+
+def _question(arguments, flow, options):
     name, sweep = sweep_of(arguments, flow)
     bvps = [method_of(arguments, one, options["tolerance"]) for one in sweep]
-
     if bvps[0] is not None and not flow.has_surface_mode():
         raise ParameterError(f"--method {arguments.method}: {flow.name} has no slow surface mode, the one that is "
                              "continued; leave it out")
@@ -44,7 +47,7 @@ def _run(arguments):
                         lambda done: [Optimum(one, (), INTERRUPTED) for one in sweep[done:]])
         return Optima(flow, name, tuple(found), arguments.method)
 
-    return report(arguments, compute)
+    return compute
 
 
 def _bounded(flow, bvp):

@@ -3,13 +3,14 @@
 from ..errors import ParameterError
 from ..specs import parse_spec
 from ..status import INTERRUPTED
-from .common import SPEC, accuracy_options, add_verb, collect, flow_of, options_of, report, sweep_of
+from .common import SPEC, accuracy_options, add_verb, collect, options_of, sweep_of
 from .critical import long_wave_option, range_option, searched, vary_option
+from .families import answer, each_option
 
 
 def add(verbs):
     add_verb(verbs, "neutral", _run, "stability neutral poiseuille --vary Re --k 0.8:1.09:30:lin --plot neutral.png",
-             vary_option, range_option, _over_or_k_option,
+             vary_option, range_option, _over_or_k_option, each_option,
              long_wave_option, accuracy_options)
 
 
@@ -22,20 +23,16 @@ def _over_or_k_option(verb):
 
 
 def _run(arguments):
-    from ..neutral import check_parameter_name
-
-    flow, options = flow_of(arguments), options_of(arguments)
-    vary = check_parameter_name(flow, arguments.vary.replace("-", "_"))
-    if arguments.k is None:
-        return _over(arguments, flow, vary, options)
-    if arguments.long_wave:
+    if arguments.k is not None and arguments.long_wave:
         raise ParameterError("--long-wave: has no meaning with --k; use --over, or the verb critical")
-    return _curve(arguments, flow, vary, options)
+    options = options_of(arguments)
+    return answer(arguments, lambda flow: (_over if arguments.k is None else _curve)(arguments, flow, options))
 
 
-def _over(arguments, flow, vary, options):
+def _over(arguments, flow, options):
     from ..neutral import NeutralPoint, NeutralSweep, critical_sweep
 
+    vary = _vary(arguments, flow)
     name, sweep = sweep_of(arguments, flow)
     if name == vary:
         raise ParameterError(f"--over: {name} is the parameter to solve for; sweep another one")
@@ -47,15 +44,15 @@ def _over(arguments, flow, vary, options):
                                       for one in sweep[done:]])
         return NeutralSweep(flow, vary, name, tuple(found))
 
-    return report(arguments, compute)
+    return compute
 
 
-def _curve(arguments, flow, vary, options):
+def _curve(arguments, flow, options):
     import numpy as np
 
     from ..neutral import NeutralCurve, NeutralPoint, joined, neutral_parts
 
-    wavenumbers = parse_spec(arguments.k, "--k")
+    vary, wavenumbers = _vary(arguments, flow), parse_spec(arguments.k, "--k")
 
     def compute():
         def rest(done):
@@ -66,4 +63,10 @@ def _curve(arguments, flow, vary, options):
         parts = neutral_parts(flow, vary, wavenumbers, **searched(arguments), **options)
         return joined(collect(arguments, parts, len(wavenumbers), rest))
 
-    return report(arguments, compute)
+    return compute
+
+
+def _vary(arguments, flow):
+    from ..neutral import check_parameter_name
+
+    return check_parameter_name(flow, arguments.vary.replace("-", "_"))

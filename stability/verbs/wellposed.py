@@ -1,10 +1,13 @@
 """stability wellposed: where a flow's own equations are ill posed, and how its fastest modes grow with k."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
+
+import numpy as np
 
 from ..checks import check_integer
 from ..output import Row
+from ..panels import LINE, WAVENUMBER, Axis, Band, Curve, Panel
 from ..record import Record
 from ..specs import parse_spec
 from ..status import INTERRUPTED, RESOLVED
@@ -63,8 +66,33 @@ class _Answer(Record):
     def rows(self):
         return list(self.table)
 
+    def panels(self):
+        return _layers_panel(self.layers), _growth_panel(self.growth)
+
     def notes(self):
         return [f"{self.flow}: {strip}" for strip in self.layers.strips]
+
+
+def _layers_panel(found):
+    """C through the layers, ill-posed strips tinted."""
+    layer = np.array(found.layer)
+    curves = [Curve(found.C[layer == name], found.height[layer == name], name) for name in dict.fromkeys(found.layer)]
+    curves = [replace(curve, label=None) for curve in curves] if len(curves) == 1 else curves
+    return Panel(Axis("C", "$C$, ill posed where $C > 0$"), Axis("height", "height in the layer"), tuple(curves),
+                 zero="x", bands=tuple(Band(strip.low, strip.high, "y") for strip in found.strips))
+
+
+def _growth_panel(growth):
+    """Largest growth rate against k, fainter the lower the degree, and that of the surface mode."""
+    k, rates = np.array([one.k for one in growth]), np.array([one.rates for one in growth])
+    count = len(growth[0].degrees)
+    curves = [Curve(k, rates[:, place], f"degree {degree}", LINE, of=0 if place else None,
+                    fade=0.25 + 0.75 * place / (count - 1)) for place, degree in enumerate(growth[0].degrees)]
+    surface = np.array([(one.k, one.surface) for one in growth if one.surface is not None]).reshape(-1, 2)
+    if len(surface):
+        curves.append(Curve(surface[:, 0], surface[:, 1], "surface mode"))
+    return Panel(replace(WAVENUMBER, scale="log"),
+                 Axis("growth_rate", r"largest growth rate $\sigma_r$", "symlog"), tuple(curves), zero="y")
 
 
 def _growth(arguments, flow, wavenumbers):

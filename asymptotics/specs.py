@@ -1,0 +1,46 @@
+"""Wavenumbers on the command line: a number, a list a,b,c, or a range a:b:n (log-spaced) or a:b:n:lin."""
+
+from math import isfinite
+
+import numpy as np
+
+_MOST = 100_000
+
+
+class BadSpec(ValueError):
+    """Text that is no SPEC of positive numbers."""
+
+
+def parse_spec(text: str, name: str) -> np.ndarray:
+    """Return the positive values of a SPEC (count,); raises BadSpec, which names `name`."""
+    values = _range(text, name) if ":" in text else np.array([_number(part, name) for part in text.split(",")])
+    if not (values > 0).all():
+        raise BadSpec(f"{name}: values must be positive (got {values.min():g})")
+    return values
+
+
+def _range(text, name):
+    parts = text.split(":")
+    linear = parts[3:] == ["lin"]
+    if len(parts) != 3 and not linear:
+        raise BadSpec(f"{name}: a range is a:b:n or a:b:n:lin (got {text!r})")
+    start, stop = _number(parts[0], name), _number(parts[1], name)
+    count = int(parts[2]) if parts[2].isdecimal() else 0
+    if not 2 <= count <= _MOST:
+        raise BadSpec(f"{name}: the number of points must be an integer from 2 to {_MOST} (got {parts[2]!r})")
+    if not start < stop:
+        raise BadSpec(f"{name}: a range must rise, a < b (got {text!r})")
+    if start <= 0:
+        raise BadSpec(f"{name}: a range of wavenumbers starts above 0 (got {text!r}); take "
+                      f"{stop / 1000:g}:{stop:g}:{count}{':lin' if linear else ''}")
+    return (np.linspace if linear else np.geomspace)(start, stop, count)
+
+
+def _number(text, name):
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")
+    if not isfinite(value):
+        raise BadSpec(f"{name}: not a finite number: {text!r}; give a number, a list a,b,c or a range a:b:n[:lin]")
+    return value
