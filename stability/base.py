@@ -17,8 +17,8 @@ from .status import RESOLVED
 from .wellposed import numbers
 
 HEIGHT = Axis("z", "height $z$")
-LABELS = {"U": "velocity $U$", "dU": "shear rate $U'$", "shear_stress": r"shear stress $\tau$", "pressure": "pressure $p$",
-          "inertial_number": "inertial number $I$"}
+VELOCITY, SHEAR_RATE = Axis("U", "velocity $U$"), Axis("dU", "shear rate $U'$")
+INERTIAL_NUMBER, STRESS = Axis("inertial_number", "inertial number $I$"), Axis("shear_stress", "stress")
 POINTS, MOST = 41, 100_000  # heights of a layer: usual, largest number
 
 
@@ -57,17 +57,21 @@ class BaseFlow(Record):
                 for i, layer in enumerate(self.layer)]
 
     def panels(self) -> tuple[Panel, ...]:
-        """Velocity, its slope and the stresses over the height, a curve for each layer."""
-        return tuple(self._panel(Axis(name, label)) for name, label in LABELS.items() if name in self.profiles)
+        """Over the height: velocity, inertial number (where there is one) or shear rate, shear stress and pressure."""
+        rate = INERTIAL_NUMBER if "inertial_number" in self.profiles else SHEAR_RATE
+        stresses = self._curves("shear_stress", r"$\tau$ "), self._curves("pressure", "$p$ ")
+        return (Panel(VELOCITY, HEIGHT, self._curves("U")), Panel(rate, HEIGHT, self._curves(rate.name)),
+                Panel(STRESS, HEIGHT, stresses[0] + stresses[1]))
 
-    def _panel(self, axis: Axis) -> Panel:
-        names = np.array(self.layer)
-        several = len(self.flux) > 1
-        curves = tuple(Curve(self.profiles[axis.name][names == layer], self.profiles["z"][names == layer],
-                             label=layer if several else None,
-                             x_error=self.error[names == layer] if axis.name == "dU" and self.error.any() else None)
-                       for layer in self.flux)
-        return Panel(axis, HEIGHT, curves)
+    def _curves(self, name: str, symbol: str = "") -> tuple[Curve, ...]:
+        """A curve for each layer, with the bars of slopes that follow; none where the flow does not state `name`."""
+        if name not in self.profiles:
+            return ()
+        names, several = np.array(self.layer), len(self.flux) > 1
+        bars = self.error if name == "dU" and self.error.any() else None
+        return tuple(Curve(self.profiles[name][names == layer], self.profiles["z"][names == layer],
+                           label=(symbol + layer if several else symbol.strip()) or None,
+                           x_error=None if bars is None else bars[names == layer]) for layer in self.flux)
 
     def notes(self) -> list[str]:
         fluxes = [f"flux in {layer}: {flux:.10g}" for layer, flux in self.flux.items()]
