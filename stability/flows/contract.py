@@ -21,8 +21,9 @@ from . import sources
 
 OPTIONS = frozenset((  # of the command line, by their names there
     "csv", "delta", "each", "flow", "form", "given", "help", "json", "k", "log", "long_wave", "max_degree", "method",
-    "mode", "modes", "output", "over", "overlay", "parameters", "plot", "points", "quantity", "quiet", "range", "run",
-    "search", "size", "style", "title", "tolerance", "vary", "version", "workers",
+    "mode", "modes", "output", "over", "overlay", "panel", "parameters", "plot", "points", "port", "quantity", "quiet",
+    "range", "run",
+    "search", "size", "style", "title", "tolerance", "vary", "version", "web", "workers",
 ))
 HEADINGS = frozenset((  # of results and their files
     "flow", "parameters", "method", "version", "notes", "rows", "source", "digest", "mode", "title", "scales",

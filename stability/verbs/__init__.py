@@ -13,6 +13,7 @@ VERBS = {
     "critical": "the value of a parameter at which the first wavenumber becomes unstable",
     "map": "a quantity over one to three parameters, on all cores; continues after Ctrl-C",
     "sensitivity": "how growth rate and phase speed change with every parameter",
+    "explore": "a window: dispersion relation with a slider for every parameter",
     "compare": "all methods on one eigenvalue: values, errors, times",
     "wellposed": "where the equations are ill posed, and how internal modes grow with k",
 }

@@ -31,6 +31,11 @@ _REMEDIES = {"SPEC": _JOIN, "NAME=SPEC": f"{_JOIN}, and sweep several parameters
 
 def add_verb(verbs, name, run, example, *options):
     """Add a verb that takes a flow, its parameters, the common options and whatever `options` add."""
+    add_bare_verb(verbs, name, run, example, *options, _output_options)
+
+
+def add_bare_verb(verbs, name, run, example, *options):
+    """Add a verb that takes a flow, its parameters and `options`, and writes no result."""
     summary = VERBS[name]
     verb = verbs.add_parser(name, help=summary, description=summary[0].upper() + summary[1:] + ".",
                             epilog=f"example: {example}", add_help=False,
@@ -38,15 +43,18 @@ def add_verb(verbs, name, run, example, *options):
     verb.add_argument("flow", metavar="FLOW", help=FLOW)
     for option in options:
         option(verb)
+    verb.add_argument("--quiet", action="store_true", help="no progress and no warnings on standard error")
+    verb.add_argument("-h", "--help", action="help", help="show this help and exit")
+    verb.set_defaults(run=run, form="table", complete=_add_parameters)
+
+
+def _output_options(verb):
     form = verb.add_mutually_exclusive_group()
     form.add_argument("--csv", dest="form", action="store_const", const="csv", help="comma-separated values")
     form.add_argument("--json", dest="form", action="store_const", const="json", help="JSON")
     verb.add_argument("-o", "--output", metavar="FILE",
                       help="write there instead of standard output; .csv, .json and .nc (netCDF) in that form")
     plot_options(verb)
-    verb.add_argument("--quiet", action="store_true", help="no progress and no warnings on standard error")
-    verb.add_argument("-h", "--help", action="help", help="show this help and exit")
-    verb.set_defaults(run=run, form="table", complete=_add_parameters)
 
 
 class Once(argparse.Action):
