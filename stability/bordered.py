@@ -63,7 +63,7 @@ class Bordered:
             scales *= factor
             size = size * factor[index]
         flat[place] *= rows[row] * columns[column]
-        return flat, (rows[:, None], columns[:, None])
+        return flat, (rows, columns)
 
     def blocks(self, flat):
         """Return band, right and bottom of a sum."""
@@ -99,9 +99,9 @@ class Factors:
         return (-1) ** swaps * phases / abs(phases) * np.linalg.slogdet(self._schur)[0]
 
     def solve(self, f):
-        """Return z with M z = f, (size, points)."""
+        """Return z with M z = f, (size, points) or (size,)."""
         if self._scales:
-            rows, columns = self._scales
+            rows, columns = (scale.reshape(-1, *[1] * (f.ndim - 1)) for scale in self._scales)
             return columns * self._solved(rows * f)
         return self._solved(f)
 
@@ -111,9 +111,9 @@ class Factors:
         return np.concatenate([inner - self._coupled @ border, border])
 
     def solve_left(self, g):
-        """Return z with z^T M = g^T (no conjugation), (size, points)."""
+        """Return z with z^T M = g^T (no conjugation), (size, points) or (size,)."""
         if self._scales:
-            rows, columns = self._scales
+            rows, columns = (scale.reshape(-1, *[1] * (g.ndim - 1)) for scale in self._scales)
             return rows * self._solved_left(columns * g)
         return self._solved_left(g)
 

@@ -27,7 +27,7 @@ _LAST = 4  # rows of an equation whose left vector bounds that of the tail: the 
 
 @dataclass(frozen=True)
 class Weights:
-    """Scalars that multiply the constant matrices: arrays (parts,), or (parts, points) at several wavenumbers.
+    """Scalars that multiply the constant matrices: arrays (parts,) at one wavenumber, (parts, points) at several.
 
     `slope` is d value / dk; `spread` is the uncertainty of the value where a symbol has one.
     """
@@ -36,9 +36,9 @@ class Weights:
     slope: np.ndarray
     spread: np.ndarray
 
-    def at(self, index):
-        """Return the weights of some of the points."""
-        return Weights(self.value[:, index], self.slope[:, index], self.spread[:, index])
+    def alone(self):
+        """Return those of one wavenumber as those of several that are one: (parts, 1)."""
+        return Weights(self.value[:, None], self.slope[:, None], self.spread[:, None])
 
 
 class Pencil:
@@ -117,18 +117,18 @@ class Pencil:
         Y = y_0 + 2 (y_1 T_1 + y_2 T_2 + ...). With a coefficient of the unknown f wrong by delta at most, it is wrong
         by delta times the mean of |Y f|.
         """
-        total = np.zeros(x.shape[1])
+        total = np.zeros(x.shape[1:])
         for part, unknown, rows, bound in self.cuts:
             series = chebyshev.basis(self.degree)[int(unknown.endswith("'"))] @ x[self.columns[unknown.rstrip("'")]]
             adjoint = 2 * y[rows]
             adjoint[0] /= 2
-            total += bound * np.abs(weights[part]) * np.mean(self._sizes(adjoint) * self._sizes(series), axis=1)
+            total += bound * np.abs(weights[part]) * np.mean(self._sizes(adjoint) * self._sizes(series), axis=-1)
         return total
 
     def _sizes(self, series):
-        """Moduli of T-series (terms, points) at Chebyshev points, twice as many as there are terms."""
-        padded = np.zeros((series.shape[1], 2 * self.degree + 2), series.dtype)
-        padded[:, :len(series)] = series.T
+        """Moduli of T-series (terms, points) at Chebyshev points (last axis), twice as many as there are terms."""
+        padded = np.zeros((*series.shape[1:], 2 * self.degree + 2), series.dtype)
+        padded[..., :len(series)] = series.T
         return np.abs(chebyshev.values(padded))
 
     @cached_property
@@ -143,11 +143,11 @@ class Pencil:
         return Stack(part, row, column, -value, len(self.parts), (self.size, self.size))
 
     def b(self, weights, x):
-        """Return B x, (size, points), for weights (parts, points) of the parts."""
+        """Return B x, (size, points) or (size,), for weights (parts, points) or (parts,) of the parts."""
         return self._b.total(self._b.spread(weights), self._b.times(x))
 
     def b_left(self, weights, y):
-        """Return y^T B, (size, points)."""
+        """Return y^T B, (size, points) or (size,)."""
         return self._b.total_left(self._b.spread(weights), y)
 
     @cached_property

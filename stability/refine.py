@@ -31,7 +31,7 @@ _OFFSET = 1e-3  # of a shared factorisation from its rate: it must not be singul
 
 @dataclass(frozen=True)
 class Eigen:
-    """Eigenvalues of a pencil at several points: arrays (points,), vectors (points, size).
+    """Eigenvalues of a pencil at several points, arrays (points,) and vectors (points, size), or at a single one.
 
     `rate` with its `slope` in k; `truncation`, the standard deviation `rounding` and the `spread` from
     uncertain symbols and coefficients, all in units of the rate; `x`, `y` right and left vectors with y^H B x = 1;
@@ -55,23 +55,23 @@ class Eigen:
 def refine(pencil, weights, rate, x=None, y=None, bars=True):
     """Iterate from a `rate` (and vectors (size,), if known) until the quotient has settled; raise ModeLost if not.
 
-    `weights` are those of one point, (parts, 1).
+    `weights` are those of one point, (parts,); so are all arrays here and in the result, without an axis of points.
     """
-    x, y = (_start(pencil.size) if vector is None else vector[:, None] for vector in (x, y))
+    x, y = (_start(pencil.size) if vector is None else vector for vector in (x, y))
     y = y.conj()  # y^H from here on
     for _ in range(_FACTORISATIONS):
         if pencil.real and not np.imag(rate):
             rate, x, y = np.real(rate), x.real, y.real
-        factors = _factors(pencil, weights.value[:, 0], rate)
+        factors = _factors(pencil, weights.value, rate)
         x, x_error = _iterate(lambda v, f=factors: f.solve(pencil.b(weights.value, v)), x)
         y, y_error = _iterate(lambda v, f=factors: f.solve_left(pencil.b_left(weights.value, v)), y)
-        rate = _rate(pencil, weights.value * pencil.stack.brackets(y, pencil.stack.times(x)))[0]
+        settled = _settled(x_error, y_error)
+        if settled:
+            found = _quotient(pencil, weights, x, y, settled, bars)
+            return _twice(pencil, weights, found, bars) if factors.uneven else found
+        rate = _rate(pencil, weights.value * pencil.stack.brackets(y, pencil.stack.times(x)))
         if not np.isfinite(rate):
             break
-        settled = _settled(x_error, y_error)
-        if settled[0]:
-            found = _quotient(pencil, weights, x, y, settled, bars)
-            return (_twice(pencil, weights, found, bars) if factors.uneven else found).split()[0]
     raise ModeLost(f"inverse iteration near rate {complex(rate):.6g} did not settle")
 
 
@@ -81,16 +81,15 @@ def _twice(pencil, weights, found, bars):
     Small unknowns beside large ones get few digits from a factorisation alone. Where those steps do not settle, since
     other modes are too near, it stays as it was found.
     """
-    again = refine_many(pencil, weights, found.rate, found.x, found.y, [slice(0, 1)], bars)
-    if not again.settled[0]:
-        return found
-    return replace(again, spread=again.spread + np.abs(again.rate - found.rate))
+    (again,) = refine_many(pencil, weights.alone(), np.array([found.rate]), found.x[None], found.y[None],
+                           [slice(0, 1)], bars).split()
+    return replace(again, spread=again.spread + abs(again.rate - found.rate)) if again.settled else found
 
 
 @lru_cache(maxsize=32)
 def _start(size):
-    """Where to start without a better guess: a random vector (size, 1)."""
-    return np.random.default_rng(1).standard_normal(size)[:, None]
+    """Where to start without a better guess: a random vector (size,)."""
+    return np.random.default_rng(1).standard_normal(size)
 
 
 def refine_many(pencil, weights, rate, x, y, groups, bars=True):
@@ -155,7 +154,7 @@ def _iterate(step, vector):
     Vectors are scaled by one component. The second step shrinks what the first one changed by the
     ratio of the distances to the wanted and the next eigenvalue, and so will the next.
     """
-    pivot = np.argmax(np.abs(vector[:, 0]))
+    pivot = np.argmax(np.abs(vector))
     start, first = (v / v[pivot] for v in (vector, step(vector)))
     second = step(first)
     second = second / second[pivot]
@@ -184,7 +183,7 @@ def _rate(pencil, value):
 
 
 def _quotient(pencil, weights, x, y, settled, bars):
-    """Rayleigh quotients of the pairs (y^H, x), with slope in k and errors."""
+    """Rayleigh quotients of the pairs (y^H, x), (size, points) or of one (size,), with slope in k and errors."""
     stack, first = pencil.stack, pencil.first_b
     products = stack.times(x)
     brackets = stack.brackets(y, products)
@@ -197,12 +196,12 @@ def _quotient(pencil, weights, x, y, settled, bars):
     spread = (weights.spread * np.abs(brackets * power)).sum(axis=0) / np.abs(norm)
     if pencil.cuts:
         spread += pencil.cut(weights.value * power, y, x)
-    variance = np.zeros(len(norm))
+    variance = np.zeros(norm.shape)
     if bars:
         variance += (square(weights.value * power) * stack.squares(y, x)).sum(axis=0)  # of matrix entries
         variance += square(value * power).sum(axis=0) / square(norm)  # of the weights, common to a part
     tail = np.abs(pencil.tail.total(pencil.tail.spread(weights.value * power), pencil.tail.times(x)))
-    beyond = tail.reshape(len(pencil.last), -1, len(norm)).sum(axis=1)
+    beyond = tail.reshape(len(pencil.last), -1, *norm.shape).sum(axis=1)
     truncation = (beyond * np.abs(y[pencil.last]).max(axis=1)).sum(axis=0)
     vectors = (np.ascontiguousarray(rows.T) for rows in (x, y.conj()))
     return Eigen(rate, slope, truncation, _EPS * np.sqrt(variance), spread, *vectors, settled)

@@ -69,7 +69,7 @@ class Solver:
         self.degrees = tuple(d for d in DEGREES if d <= max_degree) or (max_degree,)
         self.assembly = assembly or Assembly(flow)
         self.pencil = self.assembly.pencil
-        self._functions = {}
+        self._functions, self._alone = {}, {}
 
     @cached_property
     def halves(self):
@@ -95,9 +95,18 @@ class Solver:
         """Return {name: (value, slope, error)} of the symbols at one wavenumber."""
         return {"k": (k, 1.0, 0.0), **dict(zip(self.flow.functions, self._at(float(k)).T, strict=True))}
 
-    def weights(self, wavenumbers, degree):
-        """Return the weights (parts, points) of the pencil of a degree at several wavenumbers."""
-        k, functions = np.array(wavenumbers), np.array([self._at(k) for k in wavenumbers]).T
+    def weights(self, k, degree):
+        """Return the weights of the pencil of a degree at one wavenumber, (parts,), or at a list of them.
+
+        They are the same for every degree.
+        """
+        if isinstance(k, list):
+            return self._weights(np.array(k), np.array([self._at(one) for one in k]).T, degree)
+        if k not in self._alone:
+            self._alone[k] = self._weights(np.array(k, dtype=float), self._at(k).T, degree)
+        return self._alone[k]
+
+    def _weights(self, k, functions, degree):
         symbols = {"k": (k, np.ones_like(k), np.zeros_like(k)),
                    **dict(zip(self.flow.functions, functions, strict=True))}
         return self.pencil(degree).weights(symbols)
@@ -120,7 +129,7 @@ class Solver:
         for degree in self.degrees[start:]:
             pencil = self.pencil(degree)
             x, y = transfer(self, vectors, degree) if vectors else (None, None)
-            eigen = refine(pencil, self.weights([k], degree), rate, x, y, self.bars)
+            eigen = refine(pencil, self.weights(k, degree), rate, x, y, self.bars)
             mode = self._mode(k, degree, eigen)
             if glance or self._fits(mode):
                 break
@@ -156,9 +165,8 @@ class Solver:
     def overlap(self, old, mode):
         """Product of the two biorthogonal overlaps of a new mode with an old one: near 1 for one mode, 0 for two."""
         x, y = transfer(self, (old.degree, old.x, old.y), mode.degree)
-        weights = self.weights([mode.k], mode.degree).value
-        bx, b_old = self.pencil(mode.degree).b(weights, np.array([mode.x, x]).T).T
-        return np.vdot(y, bx) * np.vdot(mode.y, b_old)
+        weights, pencil = self.weights(mode.k, mode.degree).value, self.pencil(mode.degree)
+        return np.vdot(y, pencil.b(weights, mode.x)) * np.vdot(mode.y, pencil.b(weights, x))
 
     def next_degree(self, mode):
         """The degree to try first near this mode: one rung lower where it is over-resolved."""
