@@ -6,8 +6,6 @@
 The interior is factorised as a band (LAPACK gbtrf); the border follows by block elimination.
 """
 
-from functools import cached_property
-
 import numpy as np
 from scipy.linalg import lapack
 from scipy.sparse import csr_array
@@ -35,14 +33,9 @@ class Bordered:
         place = np.where(inside, column * width + self.lower + self.upper + row - column,
                          self._starts[1] + row * border + column - interior)
         place[below] = (self._starts[2] + (row - interior) * (interior + border) + column)[below]
-        self._spread = csr_array((value, (place, part)), (self._starts[3], parts))
-        self._places = place, row, column
-
-    @cached_property
-    def _entries(self):
-        """Place, row and column of every entry, each once."""
-        place, first = np.unique(self._places[0], return_index=True)
-        return place, self._places[1][first], self._places[2][first]
+        self._place, first, which = np.unique(place, return_index=True, return_inverse=True)
+        self._row, self._column = row[first], column[first]
+        self._values = csr_array((value, (which, part)), (len(first), parts))
 
     def sum(self, weights):
         """Return the sum of the parts times weights (parts,), and the scales of its rows and columns, or None.
@@ -50,20 +43,24 @@ class Bordered:
         Where entries are very large, the sum is scaled by powers of two that bring the largest entry of each row and
         column near 1: an unknown that is tiny beside the others would else be found with few digits of its own.
         """
-        flat = self._spread @ weights
-        if not np.abs(flat.view(float)).max(initial=0) > _UNEVEN:
-            return flat, None
-        place, row, column = self._entries
-        size = np.abs(flat[place])
-        rows, columns = np.ones((2, self.interior + self.border))
-        for scales, index in 2 * ((columns, column), (rows, row)):
-            largest = np.zeros(len(scales))
+        values, scales = self._values @ weights, None
+        if np.abs(values.view(float)).max(initial=0) > _UNEVEN:
+            scales = self._scales(np.abs(values))
+            values *= scales[0][self._row] * scales[1][self._column]
+        flat = np.zeros(self._starts[3], values.dtype)
+        flat[self._place] = values
+        return flat, scales
+
+    def _scales(self, size):
+        """Powers of two for rows and columns, (2, size), by the sizes of the entries."""
+        scales = np.ones((2, self.interior + self.border))
+        for axis, index in 2 * ((1, self._column), (0, self._row)):
+            largest = np.zeros(scales.shape[1])
             np.maximum.at(largest, index, size)
             factor = np.exp2(-np.round(np.log2(np.where(largest > 0, largest, 1.0))))
-            scales *= factor
+            scales[axis] *= factor
             size = size * factor[index]
-        flat[place] *= rows[row] * columns[column]
-        return flat, (rows, columns)
+        return scales
 
     def blocks(self, flat):
         """Return band, right and bottom of a sum."""
@@ -100,7 +97,7 @@ class Factors:
 
     def solve(self, f):
         """Return z with M z = f, (size, points) or (size,)."""
-        if self._scales:
+        if self.uneven:
             rows, columns = (scale.reshape(-1, *[1] * (f.ndim - 1)) for scale in self._scales)
             return columns * self._solved(rows * f)
         return self._solved(f)
@@ -112,7 +109,7 @@ class Factors:
 
     def solve_left(self, g):
         """Return z with z^T M = g^T (no conjugation), (size, points) or (size,)."""
-        if self._scales:
+        if self.uneven:
             rows, columns = (scale.reshape(-1, *[1] * (g.ndim - 1)) for scale in self._scales)
             return rows * self._solved_left(columns * g)
         return self._solved_left(g)

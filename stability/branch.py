@@ -23,9 +23,7 @@ _AGREEMENT = 0.03  # of the surface mode with its long-wave limit, in value and 
 _CONFIRMED = 3  # wavenumbers in a row, each a part of the last, at which it must agree
 _NO_FARTHER = 1.5, 1e-3  # factor in its distance from the limit that each may have over the one before, and a floor
 _TENDS, _CLOSE = 0.5, 1e-3  # limit of the difference over that at the last of them where a law is wrong; its accuracy
-_FEW = 3  # wavenumbers that are refined one by one
-_MANY = 8  # wavenumbers between two nodes that are refined one by one
-_STRIDE = 2.0  # of n more than these every _STRIDE sqrt(n)-th becomes a node first
+_FEW = 3  # wavenumbers between two nodes that are refined one by one
 _DRIFT = 0.01  # largest relative difference of a refined rate from its interpolation
 _ASTRAY = 0.5  # largest deviation of the overlap with the next node from 1
 
@@ -40,7 +38,6 @@ class Branch:
         self.solver, self.start = solver, start
         rough = rough or solver.rough(_ROUGH)
         self._walks = {side: Walk(rough, start, solver) for side in (1, -1)}
-        self._lifted = {}
         self.lost = {}
 
     @property
@@ -85,7 +82,7 @@ class Branch:
         found, lost = {}, {k: self.why_lost(k) for k in wavenumbers if not low <= k <= high}
         if reached:
             self.solver.prepare(np.array(reached))
-        for k, mode in (self._singly(reached) if len(reached) <= _FEW else self._together(reached)).items():
+        for k, mode in self._together(reached).items():
             if isinstance(mode, ModeLost):
                 lost[k] = str(mode)
             else:
@@ -95,24 +92,21 @@ class Branch:
     def _side(self, k):
         return int(copysign(1, log(k / self.start.k)))
 
-    def _singly(self, wavenumbers):
-        found = {}
-        for k, (nodes, index) in zip(wavenumbers, _intervals(self.segments, wavenumbers), strict=True):
-            found[k] = self._between(nodes, index, k)
-        return found
+    def _between(self, nodes, index, k, known=None):
+        """The mode at k next to its interpolation, or by a walk from the node before; the reason where it is lost.
 
-    def _between(self, nodes, index, k):
-        """The mode at k next to its interpolation, or by a walk from the node before; the reason where it is lost."""
+        `known` is one near by that is resolved, if there is one: it tells which degree to try.
+        """
         near = nodes[index]
         try:
             if len(nodes) > 1 and k != near.k:
-                degree = max(nodes[index].degree, nodes[index + 1].degree)
+                degree = max(nodes[index].degree, nodes[index + 1].degree, self.solver.next_degree(known) if known else 0)
                 (rate,), (x,), (y,) = interpolated(self.solver, nodes, index, np.log([k]), degree)
                 mode = self._solved(k, rate, (degree, x, y))
                 if mode and _near(mode, rate, near) and abs(self.solver.overlap(near, mode) - 1) < _ASTRAY:
                     return mode
-            mode = self._solved(near.k, near.rate, (near.degree, near.x, near.y))
-            return Walk(self.solver, mode or near).to(k)
+            mode = self._solved(near.k, near.rate, (near.degree, near.x, near.y)) or near
+            return mode if k == near.k else Walk(self.solver, mode).to(k)
         except ModeLost as reason:
             return reason
 
@@ -123,68 +117,40 @@ class Branch:
             return None
 
     def _together(self, wavenumbers):
-        """Modes at many wavenumbers: where there are many between two nodes, a few of them become nodes first; the
-        others then share factorisations."""
-        found, gaps = {}, {}
+        """Modes at many wavenumbers: where there are many between two nodes of the walk, some of them are refined one by
+        one, and the others together, next to the interpolation between those."""
+        gaps = {}
         for k, (nodes, index) in zip(wavenumbers, _intervals(self.segments, wavenumbers), strict=True):
-            exact = [node for node in nodes[index: index + 2] if node.k == k]
-            if exact:
-                found[k] = self._lift(exact[0])
-            elif len(nodes) == 1:
-                found[k] = self._between(nodes, index, k)
-            else:
-                gaps.setdefault((id(nodes[0]), index), (nodes, index, []))[2].append(k)
-        gaps = self._with_lifted(gaps.values())
-        first, second = [], []
-        for nodes, index, inside in gaps:
-            coarse = inside if len(inside) <= _MANY else inside[:: int(_STRIDE * len(inside) ** 0.5)]
-            first += [(nodes, index, [k]) for k in coarse]
-        found |= self._refined(first)
-        for nodes, _, inside in gaps:
-            known = (found[k] for k in inside if k in found and not isinstance(found[k], ModeLost))
-            finer = sorted([*nodes, *known], key=lambda node: node.k)
-            missing, rest = [k for k in inside if k not in found], {}
-            for k, (_, place) in zip(missing, _intervals([finer], missing), strict=True):
-                rest.setdefault(place, []).append(k)
-            second += [(finer, place, ks) for place, ks in rest.items()]
-        return found | self._refined(second)
-
-    def _with_lifted(self, gaps):
-        """The gaps (nodes, index, wavenumbers) with nodes of full accuracy at their ends, and no others than such."""
-        for nodes, index, _ in gaps:
-            for node in nodes[index: index + 2]:
-                self._lift(node)
-        found = []
-        for nodes, index, inside in gaps:
-            good = [self._lifted[node.k] for node in nodes if node.k in self._lifted]
-            found.append((good, [node.k for node in good].index(nodes[index].k), inside))
+            gaps.setdefault((id(nodes[0]), index), (nodes, index, []))[2].append(k)
+        found, between = {}, {}
+        for (segment, _), (nodes, index, inside) in gaps.items():
+            chosen = inside if len(inside) <= _FEW else [inside[0], inside[len(inside) // 2], inside[-1]]
+            finer, rest = between.setdefault(segment, ([], []))
+            for k in chosen:
+                found[k] = self._between(nodes, index, k, finer[-1] if finer else None)
+                finer += [found[k]] if not isinstance(found[k], ModeLost) else []
+            rest += [(k, nodes, index) for k in inside if k not in found]
+        for finer, rest in between.values():
+            found |= self._refined(finer, rest)
         return found
 
-    def _lift(self, node):
-        if node.k not in self._lifted:
-            last = next(reversed(self._lifted.values()), node)
-            degree = max(node.degree, last.degree)
-            vectors = (degree, *transfer(self.solver, (node.degree, node.x, node.y), degree))
-            self._lifted[node.k] = self._solved(node.k, node.rate, vectors) or node
-        return self._lifted[node.k]
-
-    def _refined(self, groups):
-        """{k: mode} for groups (nodes, index, wavenumbers between nodes index and index + 1), refined together.
-
-        Each group shares a factorisation; what does not settle next to its interpolation is walked to.
-        """
-        batches, found = {}, {}
-        for nodes, index, inside in groups:
-            batches.setdefault(max(nodes[index].degree, nodes[index + 1].degree), []).append((nodes, index, inside))
+    def _refined(self, finer, rest):
+        """{k: mode} for each of the `rest` (k, nodes of the walk, index of the one before) next to the interpolation
+        between the modes `finer`; what does not settle there is refined alone."""
+        batches, found, last = {}, {}, finer[-1] if finer else None
+        places = _intervals([finer], [k for k, *_ in rest]) if len(finer) > 1 and rest else []
+        for (_, index), one in zip(places, rest, strict=False):
+            batches.setdefault(max(finer[index].degree, finer[index + 1].degree), {}).setdefault(index, []).append(one)
         for degree, batch in batches.items():
-            guesses = [interpolated(self.solver, nodes, index, np.log(inside), degree)
-                       for nodes, index, inside in batch]
-            modes = iter(self.solver.solve_many([inside for *_, inside in batch], guesses, degree))
-            for (nodes, index, inside), (rates, *_) in zip(batch, guesses, strict=True):
-                for k, rate, mode in zip(inside, rates, modes, strict=False):
-                    near = mode is not None and _near(mode, rate, nodes[index])
-                    found[k] = mode if near else self._between(nodes, index, k)
-        return found
+            wavenumbers = [k for group in batch.values() for k, *_ in group]
+            guesses = [interpolated(self.solver, finer, index, np.log([k for k, *_ in group]), degree)
+                       for index, group in batch.items()]
+            rates, *vectors = (np.concatenate(parts) for parts in zip(*guesses, strict=True))
+            before = [finer[index] for index, group in batch.items() for _ in group]
+            modes = self.solver.solve_many(wavenumbers, rates, vectors, degree)
+            found |= {k: mode for k, mode, rate, near in zip(wavenumbers, modes, rates, before, strict=True)
+                      if mode and _near(mode, rate, near)}
+        return found | {k: self._between(nodes, index, k, last) for k, nodes, index in rest if k not in found}
 
 
 def _near(mode, rate, node):
@@ -206,6 +172,7 @@ def surface_mode(solver, k=_FIRST):
     tried = k / _FACTOR ** np.arange(_TRIES)
     limits, ahead = np.split(solver.flow.long_wave(np.concatenate((tried, 1.01 * tried))), 2)
     exponents = np.log(ahead / limits) / log(1.01)
+    solver.prepare(tried[:_CONFIRMED])
     agreeing = []
     for k, limit, exponent in zip(tried.tolist(), limits, exponents, strict=True):
         mode, distance = _glance(solver, k, limit, exponent, agreeing[-1][0] if agreeing else None)

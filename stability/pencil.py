@@ -36,10 +36,6 @@ class Weights:
     slope: np.ndarray
     spread: np.ndarray
 
-    def alone(self):
-        """Return those of one wavenumber as those of several that are one: (parts, 1)."""
-        return Weights(self.value[:, None], self.slope[:, None], self.spread[:, None])
-
 
 class Pencil:
     """Constant matrices of A(k) - rate B(k) for one degree, from a `table` that reaches it, and where unknowns lie.
@@ -107,8 +103,9 @@ class Pencil:
 
     def powers(self, rate):
         """Factor of every part in the residual: 1 in A, the rate in B; (parts,) then the shape of rate."""
-        inside = np.arange(len(self.parts)) < self.first_b
-        return np.where(inside.reshape(-1, *[1] * np.ndim(rate)), 1.0, rate)
+        powers = np.ones((len(self.parts), *np.shape(rate)), np.result_type(rate, float))
+        powers[self.first_b:] = rate
+        return powers
 
     def cut(self, weights, y, x):
         """Bound on what series left out change y^T (A - rate B) x, (points,); `weights` (parts, points) of the parts.

@@ -8,9 +8,8 @@ Rayleigh quotient is then wrong only by the product of their errors, and the pai
 hence the slope in k, the truncation error (y against the residual beyond the truncation) and the
 rounding error (y against a random rounding of every matrix entry).
 
-Neighbouring wavenumbers share a factorisation M: the iteration x - M^{-1} (A - rate B) x, with the matrices of each
-wavenumber and its current quotient, converges to the eigenvector of that wavenumber (Neumaier 1985). Vectors are the
-columns of arrays (size, points) here.
+At many wavenumbers each has its own factorisation and all else is done together: vectors are the columns of arrays
+(size, points) then, and plain (size,) at one.
 """
 
 from dataclasses import dataclass, fields, replace
@@ -24,9 +23,10 @@ from .stack import square
 _EPS = np.finfo(float).eps
 _TINY = np.finfo(float).tiny
 _FACTORISATIONS = 12
-_SWEEPS = 12  # of the shared iteration
+_ROUNDS = 3  # of factorisations at many points
+_CORRECTIONS = 12
 _VECTOR = 1e-9  # error of a vector, and so of the slope, that is accepted
-_OFFSET = 1e-3  # of a shared factorisation from its rate: it must not be singular
+_OFFSET = 1e-3  # of a factorisation for corrections from its rate: it must not be singular
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Eigen:
 def refine(pencil, weights, rate, x=None, y=None, bars=True):
     """Iterate from a `rate` (and vectors (size,), if known) until the quotient has settled; raise ModeLost if not.
 
-    `weights` are those of one point, (parts,); so are all arrays here and in the result, without an axis of points.
+    `weights` are those of one point, (parts,); so are all arrays in the result, without an axis of points.
     """
     x, y = (_start(pencil.size) if vector is None else vector for vector in (x, y))
     y = y.conj()  # y^H from here on
@@ -63,9 +63,7 @@ def refine(pencil, weights, rate, x=None, y=None, bars=True):
         if pencil.real and not np.imag(rate):
             rate, x, y = np.real(rate), x.real, y.real
         factors = _factors(pencil, weights.value, rate)
-        x, x_error = _iterate(lambda v, f=factors: f.solve(pencil.b(weights.value, v)), x)
-        y, y_error = _iterate(lambda v, f=factors: f.solve_left(pencil.b_left(weights.value, v)), y)
-        settled = _settled(x_error, y_error)
+        x, y, settled = _iterate(pencil, weights.value, factors, x, y)
         if settled:
             found = _quotient(pencil, weights, x, y, settled, bars)
             return _twice(pencil, weights, found, bars) if factors.uneven else found
@@ -75,68 +73,106 @@ def refine(pencil, weights, rate, x=None, y=None, bars=True):
     raise ModeLost(f"inverse iteration near rate {complex(rate):.6g} did not settle")
 
 
+def refine_many(pencil, weights, rate, x, y, bars=True):
+    """Refine good guesses of rates (points,) and vectors (points, size) at many points, whose `weights` are given.
+
+    Without `bars` the rounding is left at 0: a rough look does not need it.
+    """
+    x, y = x.T, y.conj().T
+    if pencil.real and not np.any(np.imag(rate)):
+        rate, x, y = rate.real, x.real, y.real
+    x, y = np.ascontiguousarray(x), np.ascontiguousarray(y)
+    settled, left = np.zeros(len(rate), bool), np.arange(len(rate))
+    for _ in range(_ROUNDS):
+        value = weights.value[:, left]
+        factors = _Several([_factors(pencil, value[:, i], one) for i, one in enumerate(rate[left].tolist())])
+        x[:, left], y[:, left], settled[left] = _iterate(pencil, value, factors, x[:, left], y[:, left])
+        settled[left] &= ~factors.uneven
+        rate = _rate(pencil, weights.value * pencil.stack.brackets(y, pencil.stack.times(x)))
+        left = left[~settled[left] & ~factors.uneven]
+        if not len(left):
+            break
+    return _quotient(pencil, weights, x, y, settled, bars)
+
+
+class _Several:
+    """The `bordered.Factors` of several points, whose right-hand sides are the columns of arrays (size, points)."""
+
+    def __init__(self, factors):
+        self._factors = factors
+        self.uneven = np.array([one.uneven for one in factors])
+
+    def solve(self, f):
+        return np.stack([one.solve(column) for one, column in zip(self._factors, f.T, strict=True)], axis=1)
+
+    def solve_left(self, g):
+        return np.stack([one.solve_left(column) for one, column in zip(self._factors, g.T, strict=True)], axis=1)
+
+
+def _iterate(pencil, weights, factors, x, y):
+    """Two inverse iterations from either side; return both vectors, and whether their quotient is settled."""
+    x, x_error = _iterated(lambda v: factors.solve(pencil.b(weights, v)), x)
+    y, y_error = _iterated(lambda v: factors.solve_left(pencil.b_left(weights, v)), y)
+    return x, y, _settled(x_error, y_error)
+
+
+def _iterated(step, vector):
+    """Two inverse iterations with one factorisation; return the vector and an estimate of its error.
+
+    Vectors are scaled by one component. The second step shrinks what the first one changed by the
+    ratio of the distances to the wanted and the next eigenvalue, and so will the next.
+    """
+    pivot = np.argmax(np.abs(vector), axis=0)
+    if vector.ndim > 1:
+        pivot = pivot, np.arange(vector.shape[1])
+    start, first = (v / v[pivot] for v in (vector, step(vector)))
+    second = step(first)
+    second = second / second[pivot]
+    change, error = _converging(second - first, second, _size(first - start) / _size(second))
+    return second, error
+
+
 def _twice(pencil, weights, found, bars):
     """The eigenvalue of uneven matrices by steps with the residual too; the difference joins its error.
 
     Small unknowns beside large ones get few digits from a factorisation alone. Where those steps do not settle, since
     other modes are too near, it stays as it was found.
     """
-    (again,) = refine_many(pencil, weights.alone(), np.array([found.rate]), found.x[None], found.y[None],
-                           [slice(0, 1)], bars).split()
+    again = _corrected(pencil, weights, found, bars)
     return replace(again, spread=again.spread + abs(again.rate - found.rate)) if again.settled else found
+
+
+def _corrected(pencil, weights, found, bars):
+    """The eigenvalue by the iteration x - M^{-1} (A - rate B) x with one factorisation M near it (Neumaier 1985).
+
+    M is nearly singular and a step with it mostly lies along the eigenvector: a change of scale, which is taken out.
+    """
+    value, stack, rate, x, y = weights.value, pencil.stack, found.rate, found.x, found.y.conj()
+    if pencil.real and not np.imag(rate):
+        rate, x, y = np.real(rate), x.real, y.real
+    factors = _factors(pencil, value, rate * (1 + _OFFSET))
+    bx, by = pencil.b(value, x), pencil.b_left(value, y)
+    along_x, along_y = x / (by @ x), y / (by @ x)
+    x_change = y_change = 0.0
+    for _ in range(_CORRECTIONS):
+        products = stack.times(x)
+        rate = _rate(pencil, value * stack.brackets(y, products))
+        spread = stack.spread(value * pencil.powers(rate))
+        dx, dy = factors.solve(stack.total(spread, products)), factors.solve_left(stack.total_left(spread, y))
+        dx, dy = dx - along_x * (by @ dx), dy - along_y * (bx @ dy)
+        x, y = x - dx, y - dy
+        x_change, x_error = _converging(dx, x, x_change)
+        y_change, y_error = _converging(dy, y, y_change)
+        settled = _settled(x_error, y_error)
+        if settled:
+            break
+    return _quotient(pencil, weights, x, y, settled, bars)
 
 
 @lru_cache(maxsize=32)
 def _start(size):
     """Where to start without a better guess: a random vector (size,)."""
     return np.random.default_rng(1).standard_normal(size)
-
-
-def refine_many(pencil, weights, rate, x, y, groups, bars=True):
-    """Refine good guesses of rates (points,) and vectors (points, size) at many points, whose `weights` are given.
-
-    `groups` are slices of neighbouring points: each shares the factorisation of its middle. Without `bars` the
-    rounding is left at 0: a rough look does not need it.
-    """
-    x, y = x.T, y.conj().T
-    if pencil.real and not np.any(np.imag(rate)):
-        rate, x, y = rate.real, x.real, y.real
-    x, y = np.ascontiguousarray(x), np.ascontiguousarray(y)
-    middles = [(group.start + group.stop) // 2 for group in groups]
-    factors = [_factors(pencil, weights.value[:, i], rate[i] * (1 + _OFFSET)) for i in middles]
-    project = _Projection(pencil, weights.value[:, middles], x[:, middles], y[:, middles])
-    stack, x_change, y_change = pencil.stack, np.zeros(len(rate)), np.zeros(len(rate))
-    for _ in range(_SWEEPS):
-        products = stack.times(x)
-        rate = _rate(pencil, weights.value * stack.brackets(y, products))
-        spread = stack.spread(weights.value * pencil.powers(rate))
-        right, left = stack.total(spread, products), stack.total_left(spread, y)
-        solved = [project(i, f.solve(right[:, group]), f.solve_left(left[:, group]))
-                  for i, (f, group) in enumerate(zip(factors, groups, strict=True))]
-        dx, dy = (np.concatenate(parts, axis=1) for parts in zip(*solved, strict=True))
-        x, y = x - dx, y - dy
-        x_change, x_error = _converging(dx, x, x_change)
-        y_change, y_error = _converging(dy, y, y_change)
-        settled = _settled(x_error, y_error)
-        if np.all(settled):
-            break
-    return _quotient(pencil, weights, x, y, settled, bars)
-
-
-class _Projection:
-    """Takes out of steps what lies along the eigenvectors x, y (size, groups) of the middles of groups.
-
-    The shared factorisations are nearly singular, and a step with them is mostly that: a change of scale.
-    """
-
-    def __init__(self, pencil, weights, x, y):
-        self._bx, self._by = pencil.b(weights, x), pencil.b_left(weights, y)
-        norm = (self._by * x).sum(axis=0)
-        self._x, self._y = x / norm, y / norm
-
-    def __call__(self, group, dx, dy):
-        along_x, along_y = self._by[:, group] @ dx, self._bx[:, group] @ dy
-        return dx - np.outer(self._x[:, group], along_x), dy - np.outer(self._y[:, group], along_y)
 
 
 def _factors(pencil, weights, rate):
@@ -146,20 +182,6 @@ def _factors(pencil, weights, rate):
         except np.linalg.LinAlgError:  # the rate is an eigenvalue to the last bit
             rate = rate * (1 + 4 * _EPS) + _TINY
     raise ModeLost(f"the equations are singular near the rate {complex(rate):.6g}")
-
-
-def _iterate(step, vector):
-    """Two inverse iterations with one factorisation; return the vector and an estimate of its error.
-
-    Vectors are scaled by one component. The second step shrinks what the first one changed by the
-    ratio of the distances to the wanted and the next eigenvalue, and so will the next.
-    """
-    pivot = np.argmax(np.abs(vector))
-    start, first = (v / v[pivot] for v in (vector, step(vector)))
-    second = step(first)
-    second = second / second[pivot]
-    change, error = _converging(second - first, second, _size(first - start) / _size(second))
-    return second, error
 
 
 def _converging(step, vectors, before):
@@ -174,7 +196,7 @@ def _settled(x_error, y_error):
 
 
 def _size(vectors):
-    return np.sqrt(square(vectors).sum(axis=0))
+    return np.sqrt(square(vectors).sum(axis=0) if vectors.ndim > 1 else np.vdot(vectors, vectors).real)
 
 
 def _rate(pencil, value):

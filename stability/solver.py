@@ -1,7 +1,6 @@
 """The solver of one flow: refines a mode at the degree it needs, with error bars."""
 
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 
@@ -20,7 +19,7 @@ TOLERANCE = 1e-10  # default bound on error / |sigma| for a resolved mode
 
 _FAR_BELOW = 1e-15  # relative truncation error that is aimed at with the default tolerance
 _LEAST = 32  # degree of the smallest table of entries
-_TOGETHER = 16  # groups refined at once: their vectors stay in the cache
+_TOGETHER = 64  # points refined at once: their vectors stay in the cache
 _EPS = np.finfo(float).eps
 _ROUNDING = 4.0  # standard deviations of the accumulated rounding that the error bar spans
 
@@ -136,21 +135,17 @@ class Solver:
             rate, vectors = eigen.rate, (degree, eigen.x, eigen.y)
         return mode
 
-    def solve_many(self, groups, guesses, degree):
+    def solve_many(self, wavenumbers, rates, vectors, degree):
         """Return the modes at many wavenumbers at once, None where more work is needed.
 
-        `groups` are lists of neighbouring wavenumbers, which share a factorisation; `guesses` hold for each good
-        rates (points,) and right and left vectors (points, size) at this degree.
+        `rates` (points,) and right and left `vectors` (points, size) of this degree are good guesses.
         """
         modes = []
-        for first in range(0, len(groups), _TOGETHER):
-            chunk = slice(first, first + _TOGETHER)
-            wavenumbers = [k for group in groups[chunk] for k in group]
-            ends = np.cumsum([0, *(len(group) for group in groups[chunk])]).tolist()
-            eigen = refine_many(self.pencil(degree), self.weights(wavenumbers, degree),
-                                *(np.concatenate(parts) for parts in zip(*guesses[chunk], strict=True)),
-                                [slice(*pair) for pair in pairwise(ends)], self.bars)
-            found = [self._mode(k, degree, one) for k, one in zip(wavenumbers, eigen.split(), strict=True)]
+        for first in range(0, len(wavenumbers), _TOGETHER):
+            part = slice(first, first + _TOGETHER)
+            eigen = refine_many(self.pencil(degree), self.weights(wavenumbers[part], degree), rates[part],
+                                *(rows[part] for rows in vectors), self.bars)
+            found = [self._mode(k, degree, one) for k, one in zip(wavenumbers[part], eigen.split(), strict=True)]
             modes += [mode if settled and self._fits(mode) else None
                       for mode, settled in zip(found, eigen.settled, strict=True)]
         return modes
