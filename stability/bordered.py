@@ -15,14 +15,14 @@ _UNEVEN = 1e6  # largest entry of a sum above which its rows and columns are sca
 _BAND = {"f": (lapack.dgbtrf, lapack.dgbtrs), "c": (lapack.zgbtrf, lapack.zgbtrs)}
 
 
-class Bordered:
-    """The layout of a sum of sparse matrices times scalars, from entries part, row, column, value (entries,).
+class Places:
+    """Where the entries part, row, column (entries,) of `parts` sparse matrices lie in a bordered band matrix.
 
     The band is stored by columns as LAPACK's gbtrf wants it: entry (row, column) at [column, lower + upper + row -
     column], the first `lower` places being room for fill; behind it `right` and then `bottom` with the corner.
     """
 
-    def __init__(self, part, row, column, value, parts, interior, border):
+    def __init__(self, part, row, column, parts, interior, border):
         inside, below = (row < interior) & (column < interior), row >= interior
         shift = (row - column)[inside]
         self.interior, self.border = interior, border
@@ -33,39 +33,54 @@ class Bordered:
         place = np.where(inside, column * width + self.lower + self.upper + row - column,
                          self._starts[1] + row * border + column - interior)
         place[below] = (self._starts[2] + (row - interior) * (interior + border) + column)[below]
-        self._place, first, which = np.unique(place, return_index=True, return_inverse=True)
-        self._row, self._column = row[first], column[first]
-        self._values = csr_array((value, (which, part)), (len(first), parts))
+        self._order = np.argsort(place, kind="stable")
+        place = place[self._order]
+        first = np.flatnonzero(np.diff(place, prepend=-1))
+        self._place, self.row, self.column = place[first], row[self._order][first], column[self._order][first]
+        self._part, self._first, self._parts = part[self._order], np.append(first, len(place)), parts
+
+    def matrix(self, value):
+        """The sparse matrix (places, parts) of entries with these values (entries,)."""
+        return csr_array((value[self._order], self._part, self._first), (len(self._place), self._parts))
+
+    def blocks(self, values):
+        """Return band, right and bottom with these values (places,) in place."""
+        flat = np.zeros(self._starts[3], values.dtype)
+        flat[self._place] = values
+        return tuple(flat[start: stop].reshape(shape) for start, stop, shape in
+                     zip(self._starts[:-1], self._starts[1:], self._shapes, strict=True))
+
+
+class Bordered:
+    """Sums of sparse matrices times scalars; entries lie at `places` and have the values `value` (entries,)."""
+
+    def __init__(self, places, value):
+        self.places, self._matrix = places, places.matrix(value)
 
     def sum(self, weights):
-        """Return the sum of the parts times weights (parts,), and the scales of its rows and columns, or None.
+        """Return the blocks of the sum of the parts times weights (parts,), and the scales of its rows and columns.
 
         Where entries are very large, the sum is scaled by powers of two that bring the largest entry of each row and
         column near 1: an unknown that is tiny beside the others would else be found with few digits of its own.
+        Elsewhere the scales are None.
         """
-        values, scales = self._values @ weights, None
+        values, scales = self._matrix @ weights, None
         if np.abs(values.view(float)).max(initial=0) > _UNEVEN:
             scales = self._scales(np.abs(values))
-            values *= scales[0][self._row] * scales[1][self._column]
-        flat = np.zeros(self._starts[3], values.dtype)
-        flat[self._place] = values
-        return flat, scales
+            values *= scales[0][self.places.row] * scales[1][self.places.column]
+        return self.places.blocks(values), scales
 
     def _scales(self, size):
         """Powers of two for rows and columns, (2, size), by the sizes of the entries."""
-        scales = np.ones((2, self.interior + self.border))
-        for axis, index in 2 * ((1, self._column), (0, self._row)):
+        places = self.places
+        scales = np.ones((2, places.interior + places.border))
+        for axis, index in 2 * ((1, places.column), (0, places.row)):
             largest = np.zeros(scales.shape[1])
             np.maximum.at(largest, index, size)
             factor = np.exp2(-np.round(np.log2(np.where(largest > 0, largest, 1.0))))
             scales[axis] *= factor
             size = size * factor[index]
         return scales
-
-    def blocks(self, flat):
-        """Return band, right and bottom of a sum."""
-        return tuple(flat[start: stop].reshape(shape) for start, stop, shape in
-                     zip(self._starts[:-1], self._starts[1:], self._shapes, strict=True))
 
 
 class Factors:
@@ -75,11 +90,11 @@ class Factors:
     """
 
     def __init__(self, bordered, weights):
-        flat, self._scales = bordered.sum(weights)
+        (band, right, bottom), self._scales = bordered.sum(weights)
         self.uneven = self._scales is not None
-        band, right, bottom = bordered.blocks(flat)
         factor, self._solve = _BAND[band.dtype.kind]
-        self._interior, self._lower, self._upper = bordered.interior, bordered.lower, bordered.upper
+        places = bordered.places
+        self._interior, self._lower, self._upper = places.interior, places.lower, places.upper
         self._lu, self._pivots, info = factor(band.T, self._lower, self._upper, overwrite_ab=True)
         if info:
             raise np.linalg.LinAlgError("singular interior")

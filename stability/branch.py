@@ -100,7 +100,8 @@ class Branch:
         near = nodes[index]
         try:
             if len(nodes) > 1 and k != near.k:
-                degree = max(nodes[index].degree, nodes[index + 1].degree, self.solver.next_degree(known) if known else 0)
+                likely = self.solver.next_degree(known) if known else 0
+                degree = max(nodes[index].degree, nodes[index + 1].degree, likely)
                 (rate,), (x,), (y,) = interpolated(self.solver, nodes, index, np.log([k]), degree)
                 mode = self._solved(k, rate, (degree, x, y))
                 if mode and _near(mode, rate, near) and abs(self.solver.overlap(near, mode) - 1) < _ASTRAY:
@@ -117,8 +118,8 @@ class Branch:
             return None
 
     def _together(self, wavenumbers):
-        """Modes at many wavenumbers: where there are many between two nodes of the walk, some of them are refined one by
-        one, and the others together, next to the interpolation between those."""
+        """Modes at many wavenumbers: of those between two nodes of the walk some are refined one by one, and the others
+        together, next to the interpolation between those."""
         gaps = {}
         for k, (nodes, index) in zip(wavenumbers, _intervals(self.segments, wavenumbers), strict=True):
             gaps.setdefault((id(nodes[0]), index), (nodes, index, []))[2].append(k)

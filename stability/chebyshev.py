@@ -10,6 +10,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.polynomial import chebyshev as C
 
+FEW = 4  # coefficients of a series that an entry of its matrix depends on
 CHOP = 8 * np.finfo(float).eps  # of the largest coefficient of a series: less is taken for rounding
 
 
@@ -68,18 +69,43 @@ def entries(series, slopes, count, degree):
 
     `series` lists the T-coefficients of each factor, `slopes` tells which of them multiply df/ds. Returns arrays
     (entries,): the factor's index, row < count, column <= degree and value. They do not depend on `degree`: a
-    smaller system has a part of the same entries. Only the band that a series of finite length leaves is visited.
+    smaller system has a part of the same entries.
     """
-    lengths = np.array([np.flatnonzero(one)[-1] + 1 for one in series])
-    slopes = np.asarray(slopes)
     found = []
-    for length, slope in sorted(set(zip(lengths.tolist(), slopes.tolist(), strict=True))):
-        chosen = np.flatnonzero((lengths == length) & (slopes == slope))
-        row, column = _band(length + 1, count, degree)
-        value = (_slope_values if slope else _values)(np.array([series[i][:length] for i in chosen]), row, column)
-        factor, cell = np.nonzero(value)
-        found.append((chosen[factor], row[cell], column[cell], value[factor, cell]))
+    for factor, (one, slope) in enumerate(zip(series, slopes, strict=True)):
+        row, column, index, weight = cells(tuple(np.flatnonzero(one).tolist()), bool(slope), count, degree)
+        found.append((np.full(len(row), factor), row, column, (weight * one[index]).sum(axis=0)))
     return tuple(np.concatenate(arrays) for arrays in zip(*found, strict=True))
+
+
+def cells(support, slope, count, degree):
+    """Where the matrix of a series times f, or df/ds with `slope`, has entries, and how those follow from the series.
+
+    `support` are the indices of its T-coefficients that are not 0. Returns row and column (cells,) and, for each of a
+    few coefficients that add to the entry, arrays (few, cells): which coefficient, and its weight. Only the band that a
+    series of finite length leaves is visited. phi_j is T_j / 2j - T_{j-2} / 2(j-2) less a constant, and
+    d phi_j / ds = 2 T_{j-1}.
+    """
+    length = support[-1] + 1
+    row, column = _band(length + 1, count, degree)
+    j = np.maximum(column, 1)
+    if slope:
+        pairs = [(column - 1, np.where(column > 0, 2.0, 0.0)), (column, np.zeros(len(column)))]
+    else:
+        pairs = [(column, np.where(column > 1, 0.5 / j, 1.0)),
+                 (column - 2, np.where(column > 2, -0.5 / np.maximum(j - 2, 1), 0.0))]
+    given = np.zeros(length + 1)  # how much T_m weighs in a product: halved, but for T_0
+    given[list(support)] = 0.5
+    given[0] *= 2
+    places, weights = [], []
+    for other, factor in pairs:  # T_i T_m = (T_{i+m} + T_{|i-m|}) / 2
+        other = np.maximum(other, 0)
+        for place in (np.abs(row - other), row + other):
+            places.append(np.minimum(place, length))
+            weights.append(given[places[-1]] * factor * np.where(row == 0, 0.5, 1.0))
+    index, weight = np.array(places), np.array(weights)
+    kept = weight.any(axis=0)
+    return row[kept], column[kept], np.where(weight, index, 0)[:, kept], weight[:, kept]
 
 
 def _band(reach, count, degree):
@@ -88,27 +114,3 @@ def _band(reach, count, degree):
     row, column = np.broadcast_arrays(row, row + np.arange(-reach, reach + 1))
     inside = (column >= 0) & (column <= degree)
     return row[inside], column[inside]
-
-
-def _values(series, row, column):
-    """Entries (factors, cells) of series * f: phi_j is T_j / 2j - T_{j-2} / 2(j-2), less a constant."""
-    j = np.maximum(column, 1)
-    upper = np.where(column > 1, 0.5 / j, 1.0)
-    lower = np.where(column > 2, 0.5 / np.maximum(j - 2, 1), 0.0)
-    return upper * _product(series, row, column) - lower * _product(series, row, column - 2)
-
-
-def _slope_values(series, row, column):
-    """Entries (factors, cells) of series * df/ds: d phi_j / ds = 2 T_{j-1}."""
-    return np.where(column > 0, 2 * _product(series, row, column - 1), 0)
-
-
-def _product(series, row, column):
-    """Entries of the matrices that multiply T-coefficients by a series: T_i T_m = (T_{i+m} + T_{|i-m|}) / 2."""
-    length = series.shape[1]
-    half = np.zeros((len(series), length + 1), series.dtype)
-    half[:, :-1] = series / 2
-    half[:, 0] = series[:, 0]
-    column = np.maximum(column, 0)
-    difference, total = (np.minimum(index, length) for index in (np.abs(row - column), row + column))
-    return (half[:, difference] + half[:, total]) * np.where(row == 0, 0.5, 1.0)

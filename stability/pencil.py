@@ -18,9 +18,9 @@ from functools import cached_property
 import numpy as np
 
 from . import chebyshev
-from .bordered import Bordered, Factors
+from .bordered import Bordered, Factors, Places
 from .layer import FIELDS
-from .stack import Stack
+from .stack import Lines, Stack
 
 _LAST = 4  # rows of an equation whose left vector bounds that of the tail: the last two alone feel the truncation
 
@@ -37,69 +37,96 @@ class Weights:
     spread: np.ndarray
 
 
-class Pencil:
-    """Constant matrices of A(k) - rate B(k) for one degree, from a `table` that reaches it, and where unknowns lie.
+class Layout:
+    """Where unknowns and entries of the matrices of one degree lie, from a `table` that reaches it.
 
-    The residual of the equations is (A - rate B) x. Attributes: `parts`, monomials; those from `first_b` on carry
-    the rate and belong to -B; `stack` and `tail`, their `size` rows and the rows beyond; `columns` and `rows` map
-    unknowns and equations to index arrays; `last` (equations, 4) are the last rows of each equation; `cuts` tell what
-    was left out of coefficients, none where that is rounding; `real` tells whether all matrices are real.
+    Attributes: `parts`, monomials; those from `first_b` on carry the rate and belong to -B; `size` rows and columns, of
+    which `interior` are banded; `columns` and `rows` map unknowns and equations to index arrays; `last` (equations, 4)
+    are the last rows of each equation. `stack`, `tail`, `b` and `places` tell where the entries of A - rate B, of the
+    rows beyond, of B and of the bordered band matrix lie; `inside`, `beyond` and `carrying`, which entries of the table
+    those are.
     """
 
     def __init__(self, table, degree):
-        self.degree, self.parts, self.first_b, self._tail = degree, table.parts, table.first_b, table.tail
-        self._symbols = tuple(sorted({name for part in self.parts for name in part} - {"rate"}))
-        self._powers = np.array([[part.count(name) for name in self._symbols] for part in self.parts])
+        self.degree, self.parts, self.first_b = degree, table.parts, table.first_b
+        self.symbols = tuple(sorted({name for part in self.parts for name in part} - {"rate"}))
+        self.powers = np.array([[part.count(name) for name in self.symbols] for part in self.parts])
         columns, rows = self._place(table)
-        reach = np.array([degree + equation.extra + table.tail for equation in table.system.equations]
-                         + [1] * len(table.system.conditions))
-        kept = (table.column <= degree) & (table.row < reach[table.equation])
-        entries = (table.part[kept], rows[table.equation[kept], table.row[kept]],
-                   columns[table.unknown[kept], table.column[kept]], table.value[kept])
-        self._entries, self._beyond = (tuple(array[side] for array in entries) for side in
-                                       (entries[1] < self.size, entries[1] >= self.size))
-        self.stack = Stack(*self._entries, len(self.parts), (self.size, self.size))
-        self.real = np.isrealobj(table.value)
-        self.cuts = [(self.parts.index(monomial), unknown, self.rows[equation.name], bound)
-                     for equation in table.system.equations for unknown, monomial, bound in equation.cuts]
+        reach = np.array([degree + row.extra + table.tail if number < table.structure.equations else 1
+                          for number, row in enumerate(table.structure.rows)])
+        kept = np.flatnonzero((table.column <= degree) & (table.row < reach[table.equation]))
+        part, row, column = (table.part[kept], rows[table.equation[kept], table.row[kept]],
+                             columns[table.unknown[kept], table.column[kept]])
+        here, count = row < self.size, len(self.parts)
+        self.inside, self.beyond, self.carrying = kept[here], kept[~here], kept[here & (part >= self.first_b)]
+        self.stack = Lines(part[here], row[here], column[here], count, (self.size, self.size))
+        self.places = Places(part[here], row[here], column[here], count, self.interior, self.size - self.interior)
+        self.tail = Lines(part[~here], row[~here] - self.size, column[~here], count,
+                          (table.tail * len(self.last), self.size))
+        carries = here & (part >= self.first_b)
+        self.b = Lines(part[carries], row[carries], column[carries], count, (self.size, self.size))
+        self.rate_rows = np.unique(row[carries])
+        self.entries = part[here], row[here], column[here]
 
     def _place(self, table):
         """Number unknowns and rows: interior interleaved layer by layer, then the border, then the tails.
 
         Returns the places of columns (unknowns, degree + 1) and of rows (equations and conditions, ...).
         """
-        system, width = table.system, self.degree + 1
-        extra = np.array([equation.extra for equation in system.equations])
-        field, j = (index.ravel() for index in np.indices((len(system.fields), width)))
+        structure, width = table.structure, self.degree + 1
+        equations, conditions = structure.rows[:structure.equations], len(structure.rows) - structure.equations
+        extra = np.array([equation.extra for equation in equations])
+        field, j = (index.ravel() for index in np.indices((structure.fields, width)))
         opposite = j >= 1 - extra[field]
         field, j = field[opposite], j[opposite]
         order = np.lexsort((field % len(FIELDS), j, field // len(FIELDS)))
         field, j, self.interior = field[order], j[order], len(order)
-        columns = np.full((len(table.unknowns), width), -1)
+        columns = np.full((len(structure.unknowns), width), -1)
         columns[field, j] = np.arange(self.interior)
-        used = np.arange(width) < np.where(np.arange(len(columns)) < len(system.fields), width, 1)[:, None]
+        used = np.arange(width) < np.where(np.arange(len(columns)) < structure.fields, width, 1)[:, None]
         free = used & (columns < 0)
         self.size = self.interior + int(free.sum())
         columns[free] = np.arange(self.interior, self.size)
-        rows = np.full((len(extra) + len(system.conditions), width + int(extra.max()) + table.tail), -1)
+        rows = np.full((len(extra) + conditions, width + int(extra.max()) + table.tail), -1)
         rows[field, j - 1 + extra[field]] = np.arange(self.interior)
-        rows[len(extra):, 0] = np.arange(self.interior, self.interior + len(system.conditions))
-        self.columns = {name: places[mask] for name, places, mask in zip(table.unknowns, columns, used, strict=True)}
+        rows[len(extra):, 0] = np.arange(self.interior, self.interior + conditions)
+        self.columns = {name: places[mask]
+                        for name, places, mask in zip(structure.unknowns, columns, used, strict=True)}
         self.rows = {equation.name: rows[i, : self.degree + equation.extra]
-                     for i, equation in enumerate(system.equations)}
+                     for i, equation in enumerate(equations)}
         self.rows["conditions"] = rows[len(extra):, 0]
-        self.last = np.array([self.rows[equation.name][-_LAST:] for equation in system.equations])
+        self.last = np.array([self.rows[equation.name][-_LAST:] for equation in equations])
         for i, count in enumerate(self.degree + extra):
             rows[i, count: count + table.tail] = self.size + i * table.tail + np.arange(table.tail)
         return columns, rows
 
+
+class Pencil:
+    """Constant matrices of A(k) - rate B(k): entries that lie where `layout` says, with values (entries of its table,).
+
+    The residual of the equations is (A - rate B) x. Attributes of the layout are those of the pencil; `stack` and
+    `tail` are its rows and the rows beyond; `cuts` tell what was left out of the coefficients of `system`, none where
+    that is rounding; `real` tells whether all matrices are real.
+    """
+
+    def __init__(self, layout, values, system):
+        self.layout, self._values = layout, values
+        self.degree, self.parts, self.first_b = layout.degree, layout.parts, layout.first_b
+        self.size, self.columns, self.rows, self.last = layout.size, layout.columns, layout.rows, layout.last
+        self.rate_rows = layout.rate_rows
+        self.real = np.isrealobj(values)
+        self.stack = Stack(layout.stack, values[layout.inside])
+        self.cuts = [(self.parts.index(monomial), unknown, self.rows[equation.name], bound)
+                     for equation in system.equations for unknown, monomial, bound in equation.cuts]
+
     def weights(self, symbols):
         """Return the `Weights` for symbols {name: (value, slope, error)}, non-zero numbers or arrays (points,)."""
-        value, slope, spread = np.array([symbols[name] for name in self._symbols]).swapaxes(0, 1)
-        powers = self._powers.reshape(*self._powers.shape, *[1] * (value.ndim - 1))
+        value, slope, spread = np.array([symbols[name] for name in self.layout.symbols]).swapaxes(0, 1)
+        exponents = self.layout.powers
+        powers = exponents.reshape(*exponents.shape, *[1] * (value.ndim - 1))
         product = np.prod(value ** powers, axis=1)
-        return Weights(product, product * (self._powers @ (slope / value)),
-                       np.abs(product) * (self._powers @ np.abs(spread / value)))
+        return Weights(product, product * (exponents @ (slope / value)),
+                       np.abs(product) * (exponents @ np.abs(spread / value)))
 
     def powers(self, rate):
         """Factor of every part in the residual: 1 in A, the rate in B; (parts,) then the shape of rate."""
@@ -130,14 +157,11 @@ class Pencil:
 
     @cached_property
     def tail(self):
-        part, row, column, value = self._beyond
-        return Stack(part, row - self.size, column, value, len(self.parts), (self._tail * len(self.last), self.size))
+        return Stack(self.layout.tail, self._values[self.layout.beyond])
 
     @cached_property
     def _b(self):
-        carries = self._entries[0] >= self.first_b
-        part, row, column, value = (array[carries] for array in self._entries)
-        return Stack(part, row, column, -value, len(self.parts), (self.size, self.size))
+        return Stack(self.layout.b, -self._values[self.layout.carrying])
 
     def b(self, weights, x):
         """Return B x, (size, points) or (size,), for weights (parts, points) or (parts,) of the parts."""
@@ -147,24 +171,18 @@ class Pencil:
         """Return y^T B, (size, points) or (size,)."""
         return self._b.total_left(self._b.spread(weights), y)
 
-    @cached_property
-    def rate_rows(self):
-        """The rows of B that are not empty."""
-        part, row, *_ = self._entries
-        return np.unique(row[part >= self.first_b])
-
     def factors(self, weights, rate):
         """Return LU factors of A - rate B for weights (parts,) of the parts."""
         return Factors(self._bordered, weights * self.powers(rate))
 
     @cached_property
     def _bordered(self):
-        return Bordered(*self._entries, len(self.parts), self.interior, self.size - self.interior)
+        return Bordered(self.layout.places, self._values[self.layout.inside])
 
     def pair(self, weights):
         """Return A and B in full, each (size, size)."""
-        part, row, column, value = self._entries
-        value = value * weights.value[part]
+        part, row, column = self.layout.entries
+        value = self._values[self.layout.inside] * weights.value[part]
         full = np.zeros((2, self.size, self.size), value.dtype)
         carries = part >= self.first_b
         np.add.at(full, (carries.astype(int), row, column), np.where(carries, -value, value))

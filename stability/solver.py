@@ -1,13 +1,13 @@
 """The solver of one flow: refines a mode at the degree it needs, with error bars."""
 
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from .checks import check_integer, check_tolerance
 from .flows.base import check_flow
 from .mode import Mode
-from .pencil import Pencil
+from .pencil import Layout, Pencil
 from .refine import refine, refine_many
 from .status import RESOLVED
 from .system import System
@@ -19,18 +19,22 @@ TOLERANCE = 1e-10  # default bound on error / |sigma| for a resolved mode
 
 _FAR_BELOW = 1e-15  # relative truncation error that is aimed at with the default tolerance
 _LEAST = 32  # degree of the smallest table of entries
+_KEPT = 96  # largest degree whose layouts are kept for other flows
+_LAYOUTS, _TABLES = 64, 16  # that are kept: some ten megabytes
 _TOGETHER = 64  # points refined at once: their vectors stay in the cache
 _EPS = np.finfo(float).eps
 _ROUNDING = 4.0  # standard deviations of the accumulated rounding that the error bar spans
 
 
 class Assembly:
-    """The pencils of a system of equations, each degree assembled when first asked for."""
+    """The pencils of a system of equations, each degree assembled when first asked for.
+
+    Where their entries lie is kept for all flows with the same structure.
+    """
 
     def __init__(self, flow):
         self._flow = flow
-        self._table = None
-        self._pencils = {}
+        self._values, self._pencils = {}, {}
 
     @cached_property
     def system(self):
@@ -38,9 +42,10 @@ class Assembly:
 
     def pencil(self, degree):
         if degree not in self._pencils:
-            if self._table is None or degree > self._table.degree:
-                self._table = Table(self.system, max(_LEAST, 1 << int(degree - 1).bit_length()))
-            self._pencils[degree] = Pencil(self._table, degree)
+            layout, table = _layout(self.system.structure, degree)
+            if table not in self._values:
+                self._values[table] = table.values(self.system.coefficients)
+            self._pencils[degree] = Pencil(layout, self._values[table], self.system)
         return self._pencils[degree]
 
     def serving(self, flow):
@@ -50,6 +55,24 @@ class Assembly:
         """
         other = Assembly(flow)
         return self if other.system == self.system else other
+
+
+def _layout(structure, degree):
+    """The layout of this degree, and its table."""
+    if degree > _KEPT:
+        return _layout_of.__wrapped__(structure, degree)
+    return _layout_of(structure, degree)
+
+
+@lru_cache(maxsize=_LAYOUTS)
+def _layout_of(structure, degree):
+    table = _table_of(structure, max(_LEAST, 1 << int(degree - 1).bit_length()))
+    return Layout(table, degree), table
+
+
+@lru_cache(maxsize=_TABLES)
+def _table_of(structure, degree):
+    return Table(structure, degree)
 
 
 class Solver:

@@ -11,73 +11,85 @@ from scipy.sparse import csc_array, csr_array
 _BLOCK = 24  # lines
 
 
-class Stack:
-    """`parts` matrices of shape (rows, columns), from entries part, row, column, value (entries,).
+class Lines:
+    """Where the entries part, row, column (entries,) of `parts` matrices of a `shape` (rows, columns) lie.
 
-    Kept as one sparse matrix with a line for every (part, row) that is not empty; `part` and `row` (lines,) tell
-    which it is.
+    They are kept as one sparse matrix with a line for every (part, row) that is not empty; `part` and `row` (lines,)
+    tell which it is.
     """
 
-    def __init__(self, part, row, column, value, parts, shape):
+    def __init__(self, part, row, column, parts, shape):
         key = part * shape[0] + (shape[0] - 1 - row)  # small coefficients first: sums lose less to rounding
-        order = np.argsort(key, kind="stable")
-        key = key[order]
+        self._order = np.argsort(key, kind="stable")
+        key = key[self._order]
         first = np.flatnonzero(np.diff(key, prepend=-1))
         self.part, self.row = key[first] // shape[0], shape[0] - 1 - key[first] % shape[0]
-        self._lines = csr_array((value[order], column[order], np.append(first, len(key))), (len(first), shape[1]))
-        self._shape = parts, shape[0]
+        self._column, self._starts = column[self._order], np.append(first, len(key))
+        self._shape = len(first), shape[1]
+        self._parts, self._rows = parts, shape[0]
+
+    def matrix(self, value):
+        """The sparse matrix (lines, columns) of entries with these values (entries,)."""
+        return csr_array((value[self._order], self._column, self._starts), self._shape)
 
     @cached_property
-    def _lines_t(self):
-        return self._lines.T
-
-    @cached_property
-    def _squares(self):
-        lines = self._lines
-        return csr_array((square(lines.data), lines.indices, lines.indptr), lines.shape)
-
-    @cached_property
-    def _by_row(self):
+    def by_row(self):
         """Matrix (rows, lines) that sums the lines of each row."""
         count = len(self.row)
-        return csc_array((np.ones(count), self.row, np.arange(count + 1)), (self._shape[1], count))
+        return csc_array((np.ones(count), self.row, np.arange(count + 1)), (self._rows, count))
 
     @cached_property
-    def _by_part(self):
+    def by_part(self):
         """Matrices (blocks, lines) and (parts, blocks) that sum the lines of each part, a block of them at a time.
 
         Partial sums stay short: one sum over all lines would lose a digit to rounding at a large degree.
         """
-        starts = np.searchsorted(self.part, np.arange(self._shape[0] + 1))
+        starts = np.searchsorted(self.part, np.arange(self._parts + 1))
         blocks = np.unique(np.concatenate([starts, np.arange(0, starts[-1], _BLOCK)]))
         return _sums(blocks), _sums(np.searchsorted(blocks, starts))
 
+
+class Stack:
+    """Matrices whose entries lie where `lines` says and have the values `value` (entries,)."""
+
+    def __init__(self, lines, value):
+        self._lines, self._matrix = lines, lines.matrix(value)
+
+    @cached_property
+    def _transposed(self):
+        return self._matrix.T
+
+    @cached_property
+    def _squares(self):
+        matrix = self._matrix
+        return csr_array((square(matrix.data), matrix.indices, matrix.indptr), matrix.shape)
+
     def times(self, x):
         """Products of every part with x: (lines, points), for the methods below."""
-        return self._lines @ x
+        return self._matrix @ x
 
     def spread(self, weights):
         """Weights (parts, points) of the lines: (lines, points), for the methods below."""
-        return weights[self.part]
+        return weights[self._lines.part]
 
     def total(self, spread, products):
         """Sum over the parts, weights times products with x: (rows, points)."""
-        return self._by_row @ (spread * products)
+        return self._lines.by_row @ (spread * products)
 
     def total_left(self, spread, y):
         """Sum over the parts, weights times y^T part: (columns, points)."""
-        return self._lines_t @ (spread * y[self.row])
+        return self._transposed @ (spread * y[self._lines.row])
 
     def brackets(self, y, products):
         """y^T part x for every part: (parts, points)."""
-        return self._of_parts(y[self.row] * products)
+        return self._of_parts(y[self._lines.row] * products)
 
     def squares(self, y, x):
         """Sum over the entries of each part of |y_i entry_ij x_j|^2: (parts, points)."""
-        return self._of_parts(square(y)[self.row] * (self._squares @ square(x)))
+        return self._of_parts(square(y)[self._lines.row] * (self._squares @ square(x)))
 
     def _of_parts(self, lines):
-        lines_to_blocks, blocks_to_parts = self._by_part
+        lines_to_blocks, blocks_to_parts = self._lines.by_part
         return blocks_to_parts @ (lines_to_blocks @ lines)
 
 

@@ -5,6 +5,7 @@ multiplies the unknown (or its s-derivative, marked ') and a product of scalar s
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from types import SimpleNamespace
 
 import numpy as np
@@ -30,6 +31,29 @@ class Equation:
     cuts: tuple = ()
 
 
+@dataclass(frozen=True)
+class Row:
+    """An equation or a condition, whatever its coefficients: terms (unknown, monomial, indices of what is not 0)."""
+
+    name: str
+    extra: int
+    terms: tuple
+
+
+@dataclass(frozen=True)
+class Structure:
+    """What systems have in common that differ in numbers alone: `rows` of the `equations` and then of the conditions.
+
+    The first `fields` of the `unknowns` are fields, the others surfaces; `longest` is that of `System`.
+    """
+
+    unknowns: tuple
+    fields: int
+    equations: int
+    longest: int
+    rows: tuple
+
+
 class System:
     """All `equations` and `conditions` of a flow, with the names of its `unknowns` and `surfaces`."""
 
@@ -51,8 +75,21 @@ class System:
     @property
     def pattern(self):
         """Which unknowns and monomials meet in each equation and condition, whatever their coefficients: hashable."""
-        rows = *((equation.extra, equation.terms) for equation in self.equations), *((0, t) for t in self.conditions)
-        return tuple((extra, tuple(term[:2] for term in terms)) for extra, terms in rows)
+        return tuple((row.extra, tuple(term[:2] for term in row.terms)) for row in self.structure.rows)
+
+    @cached_property
+    def structure(self):
+        """The `Structure` of the equations."""
+        rows = *((one.name, one.extra, one.terms) for one in self.equations), *(("", 0, one) for one in self.conditions)
+        return Structure((*self.fields, *self.surfaces), len(self.fields), len(self.equations), self.longest, tuple(
+            Row(name, extra, tuple((unknown, monomial, _support(series)) for unknown, monomial, series in terms))
+            for name, extra, terms in rows))
+
+    @property
+    def coefficients(self):
+        """All Chebyshev coefficients that are not 0, term by term in the order of the structure."""
+        rows = *(equation.terms for equation in self.equations), *self.conditions
+        return np.concatenate([series[series != 0] for terms in rows for *_, series in terms])
 
     def __eq__(self, other):
         return _same(self.equations, other.equations) and _same(self.conditions, other.conditions)
@@ -114,6 +151,10 @@ def _same(one, other):
 
 def _edge(layer, end):
     return SimpleNamespace(**{field: symbol(f"{layer.name}.{field}@{end}") for field in FIELDS})
+
+
+def _support(series):
+    return tuple(np.flatnonzero(series).tolist())
 
 
 def _series(number):

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from stability.bordered import Bordered, Factors
-from stability.stack import Stack
+from stability.bordered import Bordered, Factors, Places
+from stability.stack import Lines, Stack
 
 INTERIOR, BORDER, PARTS = 30, 4, 2
 SIZE = INTERIOR + BORDER
@@ -27,6 +27,14 @@ def matrices(request):
     return full, (part, row, column, full[part, row, column])
 
 
+def stacked(part, row, column, value, parts, shape):
+    return Stack(Lines(part, row, column, parts, shape), value)
+
+
+def in_a_band(part, row, column, value, parts, interior, border):
+    return Bordered(Places(part, row, column, parts, interior, border), value)
+
+
 def columns(count, seed):
     rng = np.random.default_rng(seed)
     return rng.standard_normal((SIZE, count)) + 1j * rng.standard_normal((SIZE, count))
@@ -34,7 +42,7 @@ def columns(count, seed):
 
 def test_products_from_either_side(matrices):
     full, entries = matrices
-    stack = Stack(*entries, PARTS, (SIZE, SIZE))
+    stack = stacked(*entries, PARTS, (SIZE, SIZE))
     weights, x, y = columns(3, 8)[:PARTS], columns(3, 9), columns(3, 10)
     products, spread = stack.times(x), stack.spread(weights)
     np.testing.assert_allclose(stack.total(spread, products), np.einsum("pn,prc,cn->rn", weights, full, x), atol=1e-12)
@@ -45,7 +53,7 @@ def test_products_from_either_side(matrices):
 
 
 def test_rows_without_entries():
-    stack = Stack(*(np.array(values) for values in ([1], [2], [0], [3.0])), 2, (4, 2))
+    stack = stacked(*(np.array(values) for values in ([1], [2], [0], [3.0])), 2, (4, 2))
     x = np.array([[2.0], [5.0]])
     np.testing.assert_array_equal(stack.total(stack.spread(np.ones((2, 1))), stack.times(x)), [[0], [0], [6], [0]])
     np.testing.assert_array_equal(stack.brackets(np.ones((4, 1)), stack.times(x)), [[0], [6]])
@@ -53,8 +61,8 @@ def test_rows_without_entries():
 
 def test_solves_from_either_side(matrices):
     full, entries = matrices
-    bordered = Bordered(*entries, PARTS, INTERIOR, BORDER)
-    assert (bordered.lower, bordered.upper) == (3, 2)
+    bordered = in_a_band(*entries, PARTS, INTERIOR, BORDER)
+    assert (bordered.places.lower, bordered.places.upper) == (3, 2)
     weights = np.array([1.0, -0.25])
     matrix = np.tensordot(weights, full, 1)
     x = columns(3, 11) if np.iscomplexobj(full) else columns(3, 11).real
@@ -64,7 +72,7 @@ def test_solves_from_either_side(matrices):
 
 
 def test_a_singular_matrix_is_named():
-    bordered = Bordered(np.zeros(5, int), np.arange(5), np.arange(5), np.array([1.0, 1.0, 0.0, 1.0, 1.0]), 1, 3, 2)
+    bordered = in_a_band(np.zeros(5, int), np.arange(5), np.arange(5), np.array([1.0, 1.0, 0.0, 1.0, 1.0]), 1, 3, 2)
     with pytest.raises(np.linalg.LinAlgError):
         Factors(bordered, np.ones(1))
 
@@ -75,7 +83,7 @@ def test_small_unknowns_of_uneven_matrices_keep_their_digits(matrices):
     rng = np.random.default_rng(3)
     rows, columns = 10.0 ** rng.integers(-12, 13, (2, SIZE))
     part, row, column, value = entries
-    uneven = Bordered(part, row, column, value * rows[row] * columns[column], PARTS, INTERIOR, BORDER)
+    uneven = in_a_band(part, row, column, value * rows[row] * columns[column], PARTS, INTERIOR, BORDER)
     weights, x = np.array([1.0, 0.5]), rng.standard_normal((SIZE, 2))
     matrix = full[0] + 0.5 * full[1]
     factors = Factors(uneven, weights)
@@ -91,7 +99,7 @@ def test_sums_of_many_lines_are_rounded_like_short_ones():
     rng, line, one = np.random.default_rng(4), np.arange(count), np.ones((1, 1))
     errors = []
     for value in rng.uniform(0.5, 1.0, (10, count)):
-        stack = Stack(np.zeros(count, int), line, np.zeros(count, int), value, 1, (count, 1))
+        stack = stacked(np.zeros(count, int), line, np.zeros(count, int), value, 1, (count, 1))
         found = stack.brackets(np.ones((count, 1)), stack.times(one))[0, 0]
         exact = math.fsum(value)
         errors.append([abs(found - exact), abs(np.cumsum(value)[-1] - exact)])
