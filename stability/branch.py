@@ -100,8 +100,8 @@ class Branch:
         near = nodes[index]
         try:
             if len(nodes) > 1 and k != near.k:
-                likely = self.solver.next_degree(known) if known else 0
-                degree = max(nodes[index].degree, nodes[index + 1].degree, likely)
+                degree = self.solver.next_degree(known) if known else 0
+                degree = max(degree, *(self.solver.likely_degree(node) for node in nodes[index: index + 2]))
                 (rate,), (x,), (y,) = interpolated(self.solver, nodes, index, np.log([k]), degree)
                 mode = self._solved(k, rate, (degree, x, y))
                 if mode and _near(mode, rate, near) and abs(self.solver.overlap(near, mode) - 1) < _ASTRAY:

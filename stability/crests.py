@@ -8,7 +8,7 @@ to both neighbours; a crest lies where the slope turns on the way.
 
 from contextlib import suppress
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import combinations, pairwise
 from math import ceil, exp, log
 from typing import Any
 
@@ -42,7 +42,7 @@ _UNEVEN = 0.2  # departure of growth between two nodes from the mean of its end 
 _FINEST = 6  # halvings of a stretch between two nodes
 _ITERATIONS = 40
 _SETTLED = 1e-15  # relative step in k
-_NEAR = 1e-4  # relative way from a known mode within which vectors are refined twice
+_NEAR = 1e-6  # relative way from a known mode within which vectors are refined twice
 _APART = 1e-5  # relative distance of two k from which the slopes there give the curvature
 _AUDIBLE = 1.5  # times its error that a slope of growth must have, or the mode is computed properly
 _NOISE = 5.0  # times its error that a difference or slope of growth must have to be judged by
@@ -184,7 +184,7 @@ def _heard(solver, node):
     """The node, computed by a finer solver where its slope of growth does not stand out from its error."""
     if abs(node.slope.real) > _AUDIBLE * node.slope_error:
         return node
-    return solver.solve(node.k, node.rate, (node.degree, node.x, node.y))
+    return solver.refined(node)
 
 
 def _brackets(solver, left, right, halvings=_FINEST):
@@ -246,15 +246,19 @@ def _last_regime(flow, low):
 
 
 def crest(solver, left, right):
-    """The `Maximum` between two modes that bracket it: secants of the analytic slope, kept inside the bracket."""
-    low, high, now, scatter = left, right, min(left, right, key=lambda end: abs(end.slope.real)), 0.0
-    curvature, k = (right.slope.real - left.slope.real) / (right.k - left.k), _hermite(left, right)
+    """The `Maximum` between two modes that bracket it: secants of the analytic slope, kept inside the bracket.
+
+    The curvature is that of the parabola through the last three slopes, as long as those are apart.
+    """
+    low, high, scatter = left, right, 0.0
+    before, now = sorted((left, right), key=lambda end: -abs(end.slope.real))
+    curvature, k = _bend(left, right), _hermite(left, right)
     for _ in range(_ITERATIONS):
         near = low if k - low.k < high.k - k else high
-        before, (now, again) = now, _moved(solver, near, k, abs(k - near.k) < _NEAR * k)
+        (earlier, before), (now, again) = (before, now), _moved(solver, near, k, abs(k - near.k) < _NEAR * k)
         low, high = (now, high) if now.slope.real > 0 else (low, now)
-        if abs(now.k - before.k) > _APART * now.k:
-            curvature = (now.slope.real - before.slope.real) / (now.k - before.k)
+        if min(abs(a.k - b.k) for a, b in combinations((now, before, earlier), 2)) > _APART * now.k:
+            curvature = _bend(now, before) + _bend(now, earlier) - _bend(before, earlier)
         scatter = max(scatter, _SCATTER * abs(again - now.slope))
         step, noise = -now.slope.real / curvature, now.slope_error + scatter
         if again != now.slope and abs(step) < max(_SETTLED * now.k, 0.1 * noise / abs(curvature)):
@@ -265,6 +269,11 @@ def crest(solver, left, right):
     if is_resolved(status) and not error <= max(solver.tolerance, _K_TOLERANCE) * now.k:
         status = f"error {error:.1e} of k_max exceeds tolerance"
     return Maximum(now.k, error, now, status)
+
+
+def _bend(one, other):
+    """Mean curvature of growth between two modes."""
+    return (other.slope.real - one.slope.real) / (other.k - one.k)
 
 
 def middle_of(solver, left, right):

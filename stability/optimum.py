@@ -234,7 +234,7 @@ def _outdone(solver, best):
 def _properly(solver, mode):
     """A mode of a rough look with full accuracy."""
     (half,) = (half for half in solver.halves if half.flow == mode.flow)
-    return half.solve(mode.k, mode.rate, (mode.degree, mode.x, mode.y))
+    return half.refined(mode)
 
 
 def _distinct(maxima):

@@ -37,36 +37,49 @@ class Weights:
     spread: np.ndarray
 
 
+def weights_of(structure, symbols):
+    """Return the `Weights` of the parts for symbols {name: (value, slope, error)}, numbers other than 0 or arrays."""
+    value, slope, spread = np.array([symbols[name] for name in structure.symbols]).swapaxes(0, 1)
+    exponents = structure.powers
+    product = np.prod(value ** exponents.reshape(*exponents.shape, *[1] * (value.ndim - 1)), axis=1)
+    return Weights(product, product * (exponents @ (slope / value)),
+                   np.abs(product) * (exponents @ np.abs(spread / value)))
+
+
 class Layout:
     """Where unknowns and entries of the matrices of one degree lie, from a `table` that reaches it.
 
-    Attributes: `parts`, monomials; those from `first_b` on carry the rate and belong to -B; `size` rows and columns, of
-    which `interior` are banded; `columns` and `rows` map unknowns and equations to index arrays; `last` (equations, 4)
-    are the last rows of each equation. `stack`, `tail`, `b` and `places` tell where the entries of A - rate B, of the
-    rows beyond, of B and of the bordered band matrix lie; `inside`, `beyond` and `carrying`, which entries of the table
-    those are.
+    Attributes: `size` rows and columns, of which `interior` are banded; `columns` and `rows` map unknowns and equations
+    to index arrays; `last` (equations, 4) are the last rows of each equation. `stack`, `tail`, `b` and `places` tell
+    where the entries of A - rate B, of the rows beyond, of B and of the bordered band matrix lie; `inside`, `beyond`
+    and `carrying`, which entries of the table those are.
     """
 
     def __init__(self, table, degree):
-        self.degree, self.parts, self.first_b = degree, table.parts, table.first_b
-        self.symbols = tuple(sorted({name for part in self.parts for name in part} - {"rate"}))
-        self.powers = np.array([[part.count(name) for name in self.symbols] for part in self.parts])
+        self.structure, self.degree, self._common = table.structure, degree, {}
         columns, rows = self._place(table)
         reach = np.array([degree + row.extra + table.tail if number < table.structure.equations else 1
                           for number, row in enumerate(table.structure.rows)])
         kept = np.flatnonzero((table.column <= degree) & (table.row < reach[table.equation]))
         part, row, column = (table.part[kept], rows[table.equation[kept], table.row[kept]],
                              columns[table.unknown[kept], table.column[kept]])
-        here, count = row < self.size, len(self.parts)
-        self.inside, self.beyond, self.carrying = kept[here], kept[~here], kept[here & (part >= self.first_b)]
+        here, count = row < self.size, len(self.structure.parts)
+        carries = here & (part >= self.structure.first_b)
+        self.inside, self.beyond, self.carrying = kept[here], kept[~here], kept[carries]
         self.stack = Lines(part[here], row[here], column[here], count, (self.size, self.size))
         self.places = Places(part[here], row[here], column[here], count, self.interior, self.size - self.interior)
         self.tail = Lines(part[~here], row[~here] - self.size, column[~here], count,
                           (table.tail * len(self.last), self.size))
-        carries = here & (part >= self.first_b)
         self.b = Lines(part[carries], row[carries], column[carries], count, (self.size, self.size))
         self.rate_rows = np.unique(row[carries])
         self.entries = part[here], row[here], column[here]
+
+    def common(self, other):
+        """Which columns, and which rows, it has in common with another degree: for each, where here and where there."""
+        if other.degree not in self._common:
+            self._common[other.degree] = tuple(_common(*pair) for pair in
+                                               ((self.columns, other.columns), (self.rows, other.rows)))
+        return self._common[other.degree]
 
     def _place(self, table):
         """Number unknowns and rows: interior interleaved layer by layer, then the border, then the tails.
@@ -101,6 +114,12 @@ class Layout:
         return columns, rows
 
 
+def _common(one, other):
+    """Places here and there of what two maps from names to index arrays have in common."""
+    counts = {name: min(len(places), len(other[name])) for name, places in one.items()}
+    return tuple(np.concatenate([side[name][:count] for name, count in counts.items()]) for side in (one, other))
+
+
 class Pencil:
     """Constant matrices of A(k) - rate B(k): entries that lie where `layout` says, with values (entries of its table,).
 
@@ -111,7 +130,7 @@ class Pencil:
 
     def __init__(self, layout, values, system):
         self.layout, self._values = layout, values
-        self.degree, self.parts, self.first_b = layout.degree, layout.parts, layout.first_b
+        self.degree, self.parts, self.first_b = layout.degree, layout.structure.parts, layout.structure.first_b
         self.size, self.columns, self.rows, self.last = layout.size, layout.columns, layout.rows, layout.last
         self.rate_rows = layout.rate_rows
         self.real = np.isrealobj(values)
@@ -121,12 +140,7 @@ class Pencil:
 
     def weights(self, symbols):
         """Return the `Weights` for symbols {name: (value, slope, error)}, non-zero numbers or arrays (points,)."""
-        value, slope, spread = np.array([symbols[name] for name in self.layout.symbols]).swapaxes(0, 1)
-        exponents = self.layout.powers
-        powers = exponents.reshape(*exponents.shape, *[1] * (value.ndim - 1))
-        product = np.prod(value ** powers, axis=1)
-        return Weights(product, product * (exponents @ (slope / value)),
-                       np.abs(product) * (exponents @ np.abs(spread / value)))
+        return weights_of(self.layout.structure, symbols)
 
     def powers(self, rate):
         """Factor of every part in the residual: 1 in A, the rate in B; (parts,) then the shape of rate."""

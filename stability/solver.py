@@ -7,7 +7,7 @@ import numpy as np
 from .checks import check_integer, check_tolerance
 from .flows.base import check_flow
 from .mode import Mode
-from .pencil import Layout, Pencil
+from .pencil import Layout, Pencil, Weights, weights_of
 from .refine import refine, refine_many
 from .status import RESOLVED
 from .system import System
@@ -91,7 +91,7 @@ class Solver:
         self.degrees = tuple(d for d in DEGREES if d <= max_degree) or (max_degree,)
         self.assembly = assembly or Assembly(flow)
         self.pencil = self.assembly.pencil
-        self._functions, self._alone = {}, {}
+        self._known = {}
 
     @cached_property
     def halves(self):
@@ -100,38 +100,34 @@ class Solver:
                      for half in self.flow.halves())
 
     def prepare(self, k):
-        """Evaluate the flow's functions of k for a whole array (count,) at once."""
-        k = k[[one not in self._functions for one in k.tolist()]]
+        """Evaluate the flow's functions of k, and the weights, for a whole array (count,) at once."""
+        k = k[[one not in self._known for one in k.tolist()]]
         if not len(k):
             return
-        values = np.array(list(self.flow.evaluate(k).values())).T  # (count, value slope error, functions)
-        self._functions.update(zip(k.tolist(), values if len(values) else [values] * len(k), strict=True))
+        symbols = {"k": (k, np.ones_like(k), np.zeros_like(k)), **self.flow.evaluate(k)}
+        weights = weights_of(self.assembly.system.structure, symbols)
+        rows = weights.value.T.copy(), weights.slope.T.copy(), weights.spread.T.copy()
+        for index, one in enumerate(k.tolist()):
+            self._known[one] = symbols, rows, index
 
     def _at(self, k):
-        """Value, slope and error of the functions at one wavenumber, (3, functions)."""
-        if k not in self._functions:
-            self.prepare(np.array([k], dtype=float))
-        return self._functions[k]
+        k = float(k)
+        if k not in self._known:
+            self.prepare(np.array([k]))
+        return self._known[k]
 
     def symbols(self, k):
         """Return {name: (value, slope, error)} of the symbols at one wavenumber."""
-        return {"k": (k, 1.0, 0.0), **dict(zip(self.flow.functions, self._at(float(k)).T, strict=True))}
+        symbols, _, index = self._at(k)
+        return {name: tuple(values[index] for values in triple) for name, triple in symbols.items()}
 
-    def weights(self, k, degree):
-        """Return the weights of the pencil of a degree at one wavenumber, (parts,), or at a list of them.
-
-        They are the same for every degree.
-        """
+    def weights(self, k):
+        """Return the weights of the pencils at one wavenumber, (parts,), or at a list of them, (parts, points)."""
         if isinstance(k, list):
-            return self._weights(np.array(k), np.array([self._at(one) for one in k]).T, degree)
-        if k not in self._alone:
-            self._alone[k] = self._weights(np.array(k, dtype=float), self._at(k).T, degree)
-        return self._alone[k]
-
-    def _weights(self, k, functions, degree):
-        symbols = {"k": (k, np.ones_like(k), np.zeros_like(k)),
-                   **dict(zip(self.flow.functions, functions, strict=True))}
-        return self.pencil(degree).weights(symbols)
+            each = [self.weights(one) for one in k]
+            return Weights(*(np.array([getattr(one, name) for one in each]).T for name in ("value", "slope", "spread")))
+        _, rows, index = self._at(k)
+        return Weights(*(array[index] for array in rows))
 
     def width(self, k):
         """sigma / rate at wavenumber k."""
@@ -151,12 +147,21 @@ class Solver:
         for degree in self.degrees[start:]:
             pencil = self.pencil(degree)
             x, y = transfer(self, vectors, degree) if vectors else (None, None)
-            eigen = refine(pencil, self.weights(k, degree), rate, x, y, self.bars)
+            eigen = refine(pencil, self.weights(k), rate, x, y, self.bars)
             mode = self._mode(k, degree, eigen)
             if glance or self._fits(mode):
                 break
             rate, vectors = eigen.rate, (degree, eigen.x, eigen.y)
         return mode
+
+    def refined(self, mode):
+        """Return a mode of a rougher solver as this one has it."""
+        return self.solve(mode.k, mode.rate, (mode.degree, mode.x, mode.y), self.likely_degree(mode))
+
+    def likely_degree(self, mode):
+        """The degree to try first where a rougher solver has found this mode: a higher one where its own is too low."""
+        rung = self.degrees.index(mode.degree)
+        return self.degrees[min(rung + (not self._fits(mode)), len(self.degrees) - 1)]
 
     def solve_many(self, wavenumbers, rates, vectors, degree):
         """Return the modes at many wavenumbers at once, None where more work is needed.
@@ -166,7 +171,7 @@ class Solver:
         modes = []
         for first in range(0, len(wavenumbers), _TOGETHER):
             part = slice(first, first + _TOGETHER)
-            eigen = refine_many(self.pencil(degree), self.weights(wavenumbers[part], degree), rates[part],
+            eigen = refine_many(self.pencil(degree), self.weights(wavenumbers[part]), rates[part],
                                 *(rows[part] for rows in vectors), self.bars)
             found = [self._mode(k, degree, one) for k, one in zip(wavenumbers[part], eigen.split(), strict=True)]
             modes += [mode if settled and self._fits(mode) else None
@@ -183,7 +188,7 @@ class Solver:
     def overlap(self, old, mode):
         """Product of the two biorthogonal overlaps of a new mode with an old one: near 1 for one mode, 0 for two."""
         x, y = transfer(self, (old.degree, old.x, old.y), mode.degree)
-        weights, pencil = self.weights(mode.k, mode.degree).value, self.pencil(mode.degree)
+        weights, pencil = self.weights(mode.k).value, self.pencil(mode.degree)
         return np.vdot(y, pencil.b(weights, mode.x)) * np.vdot(mode.y, pencil.b(weights, x))
 
     def next_degree(self, mode):
@@ -215,13 +220,12 @@ def transfer(solver, vectors, degree):
     old, x, y = vectors
     if old == degree:
         return x, y
-    source, target = solver.pencil(old), solver.pencil(degree)
-    return _fit(x, source.columns, target.columns, target.size), _fit(y, source.rows, target.rows, target.size)
+    target = solver.pencil(degree).layout
+    return tuple(_fit(vector, *places, target.size) for vector, places in
+                 zip((x, y), solver.pencil(old).layout.common(target), strict=True))
 
 
 def _fit(vector, source, target, size):
     fitted = np.zeros(size, vector.dtype)
-    for name, places in source.items():
-        count = min(len(places), len(target[name]))
-        fitted[target[name][:count]] = vector[places[:count]]
+    fitted[target] = vector[source]
     return fitted

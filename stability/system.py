@@ -44,7 +44,8 @@ class Row:
 class Structure:
     """What systems have in common that differ in numbers alone: `rows` of the `equations` and then of the conditions.
 
-    The first `fields` of the `unknowns` are fields, the others surfaces; `longest` is that of `System`.
+    The first `fields` of the `unknowns` are fields, the others surfaces; `longest` is that of `System`. `parts` are the
+    monomials, those from `first_b` on with the rate; `powers` (parts, symbols) counts the other `symbols` in them.
     """
 
     unknowns: tuple
@@ -52,6 +53,23 @@ class Structure:
     equations: int
     longest: int
     rows: tuple
+
+    @cached_property
+    def parts(self):
+        return tuple(sorted({monomial for row in self.rows for _, monomial, _ in row.terms},
+                            key=lambda monomial: ("rate" in monomial, monomial)))
+
+    @cached_property
+    def first_b(self):
+        return sum("rate" not in part for part in self.parts)
+
+    @cached_property
+    def symbols(self):
+        return tuple(sorted({name for part in self.parts for name in part} - {"rate"}))
+
+    @cached_property
+    def powers(self):
+        return np.array([[part.count(name) for name in self.symbols] for part in self.parts])
 
 
 class System:

@@ -17,23 +17,19 @@ class Table:
     """Entries of the equations and conditions of a system of this `structure`, as arrays (entries,).
 
     An entry multiplies column `column` of the unknown number `unknown` (fields first, then surfaces) in row `row`
-    of the equation number `equation` (conditions after the equations) and belongs to `part`: an index into the
-    monomials `parts`, of which those from `first_b` on carry the rate. Every equation has `tail` rows beyond a degree:
-    as many as its coefficients have terms, or products with the last unknowns would go unseen.
+    of the equation number `equation` (conditions after the equations) and belongs to `part`: an index into the parts
+    of the structure. Every equation has `tail` rows beyond a degree: as many as its coefficients have terms, or
+    products with the last unknowns would go unseen.
     """
 
     def __init__(self, structure, degree):
         self.structure, self.degree, self.tail = structure, degree, max(_TAIL, structure.longest)
-        rows = [row.terms for row in structure.rows]
-        self.parts = tuple(sorted({monomial for terms in rows for _, monomial, _ in terms},
-                                  key=lambda monomial: ("rate" in monomial, monomial)))
-        self.first_b = sum("rate" not in part for part in self.parts)
         blocks, start = [], 0
         for number, row in enumerate(structure.rows):
             places = self._equation if number < structure.equations else self._condition
             for unknown, monomial, support in row.terms:
                 name, *entries, index, weight = places(unknown, support)
-                blocks.append((*np.broadcast_arrays(self.parts.index(monomial), number,
+                blocks.append((*np.broadcast_arrays(structure.parts.index(monomial), number,
                                                     structure.unknowns.index(name), *entries), start + index, weight))
                 start += len(support)
         self.part, self.equation, self.unknown, self.row, self.column, index, weight = (

@@ -79,7 +79,7 @@ def test_truncation_error_falls_geometrically_and_its_estimate_bounds_it(flow, k
     errors, estimates = [], []
     for degree in degrees:
         pencil = solver.pencil(int(degree))
-        eigen = refine(pencil, solver.weights(k, int(degree)), exact / solver.width(k))
+        eigen = refine(pencil, solver.weights(k), exact / solver.width(k))
         errors.append(solver.width(k) * abs(eigen.rate - exact / solver.width(k)))
         estimates.append(solver.width(k) * eigen.truncation)
     rate = np.polyfit(degrees, np.log10(errors), 1)[0]
