@@ -44,10 +44,10 @@ class Places:
         return csr_array((value[self._order], self._part, self._first), (len(self._place), self._parts))
 
     def blocks(self, values):
-        """Return band, right and bottom with these values (places,) in place."""
-        flat = np.zeros(self._starts[3], values.dtype)
-        flat[self._place] = values
-        return tuple(flat[start: stop].reshape(shape) for start, stop, shape in
+        """Return band, right and bottom with these values (..., places) in place."""
+        flat = np.zeros((*values.shape[:-1], self._starts[3]), values.dtype)
+        flat[..., self._place] = values
+        return tuple(flat[..., start: stop].reshape(*values.shape[:-1], *shape) for start, stop, shape in
                      zip(self._starts[:-1], self._starts[1:], self._shapes, strict=True))
 
 
@@ -69,6 +69,11 @@ class Bordered:
             scales = self._scales(np.abs(values))
             values *= scales[0][self.places.row] * scales[1][self.places.column]
         return self.places.blocks(values), scales
+
+    def sums(self, weights):
+        """Return the blocks of the sums at many points, weights (parts, points), unscaled, and which are uneven."""
+        values = np.ascontiguousarray((self._matrix @ weights).T)
+        return self.places.blocks(values), np.abs(values.view(float)).max(axis=1) > _UNEVEN
 
     def _scales(self, size):
         """Powers of two for rows and columns, (2, size), by the sizes of the entries."""
@@ -136,3 +141,43 @@ class Factors:
 
     def _inner(self, right, trans=0):
         return self._solve(self._lu, self._lower, self._upper, right, self._pivots, trans=trans)[0]
+
+
+class ManyFactors:
+    """The `Factors` at many points, weights (parts, points); right-hand sides are the columns of arrays (size, points).
+
+    `uneven` tells which points need scales, and have none here. What is singular gives numbers that are not finite.
+    """
+
+    def __init__(self, bordered, weights):
+        (band, right, bottom), self.uneven = bordered.sums(weights)
+        places = bordered.places
+        factor, self._solve = _BAND[band.dtype.kind]
+        self._interior, self._shape = places.interior, (places.lower, places.upper)
+        self._factors = [factor(one.T, *self._shape, overwrite_ab=True)[:2] for one in band]
+        self._bottom = bottom[..., : self._interior]
+        self._coupled = np.array([self._inner(index, one) for index, one in enumerate(right)])
+        schur = bottom[..., self._interior:] - self._bottom @ self._coupled
+        try:
+            self._border = np.linalg.inv(schur)
+        except np.linalg.LinAlgError:
+            self._border = np.full_like(schur, np.nan)
+
+    def solve(self, f):
+        """Return z with M z = f at every point."""
+        f = f.T
+        inner = np.array([self._inner(index, one) for index, one in enumerate(f[:, : self._interior])])[..., None]
+        border = self._border @ (f[:, self._interior:, None] - self._bottom @ inner)
+        return np.concatenate([inner - self._coupled @ border, border], axis=1)[..., 0].T
+
+    def solve_left(self, g):
+        """Return z with z^T M = g^T (no conjugation) at every point."""
+        inner, border = g.T[:, None, : self._interior], g.T[:, None, self._interior:]
+        border = (border - inner @ self._coupled) @ self._border
+        inner = (inner - border @ self._bottom)[:, 0]
+        inner = np.array([self._inner(index, one, trans=1) for index, one in enumerate(inner)])
+        return np.concatenate([inner, border[:, 0]], axis=1).T
+
+    def _inner(self, index, right, trans=0):
+        lu, pivots = self._factors[index]
+        return self._solve(lu, *self._shape, right, pivots, trans=trans)[0]

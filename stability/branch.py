@@ -253,9 +253,10 @@ def interpolated(solver, nodes, index, t, degree):
     rates = here.rate + u * rise + u * (1 - u) * (a * (1 - u) + b * u)
     first = min(max(index - 1, 0), max(len(nodes) - 4, 0))
     used = nodes[first: first + 4]
-    times = np.array([log(node.k) for node in used])
-    weights = np.array([np.prod([(t - times[j]) / (times[i] - times[j]) for j in range(len(used)) if j != i], axis=0)
-                        for i in range(len(used))])
+    times = np.log([node.k for node in used])
+    ratios = (t - times[:, None]) / (times[:, None] - times + np.eye(len(used)))[..., None]
+    ratios[np.diag_indices(len(used))] = 1.0
+    weights = ratios.prod(axis=1)
     vectors = [transfer(solver, (node.degree, node.x, node.y), degree) for node in used]
     return rates, *(_blend(weights, rows, index - first) for rows in zip(*vectors, strict=True))
 

@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 
 from . import chebyshev
-from .bordered import Bordered, Factors, Places
+from .bordered import Bordered, Factors, ManyFactors, Places
 from .layer import FIELDS
 from .stack import Lines, Stack
 
@@ -186,8 +186,9 @@ class Pencil:
         return self._b.total_left(self._b.spread(weights), y)
 
     def factors(self, weights, rate):
-        """Return LU factors of A - rate B for weights (parts,) of the parts."""
-        return Factors(self._bordered, weights * self.powers(rate))
+        """Return LU factors of A - rate B for weights (parts,) of the parts, or (parts, points) and rates (points,)."""
+        kind = ManyFactors if np.ndim(rate) else Factors
+        return kind(self._bordered, weights * self.powers(rate))
 
     @cached_property
     def _bordered(self):

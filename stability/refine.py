@@ -85,7 +85,7 @@ def refine_many(pencil, weights, rate, x, y, bars=True):
     settled, left = np.zeros(len(rate), bool), np.arange(len(rate))
     for _ in range(_ROUNDS):
         value = weights.value[:, left]
-        factors = _Several([_factors(pencil, value[:, i], one) for i, one in enumerate(rate[left].tolist())])
+        factors = pencil.factors(value, rate[left])
         x[:, left], y[:, left], settled[left] = _iterate(pencil, value, factors, x[:, left], y[:, left])
         settled[left] &= ~factors.uneven
         rate = _rate(pencil, weights.value * pencil.stack.brackets(y, pencil.stack.times(x)))
@@ -93,20 +93,6 @@ def refine_many(pencil, weights, rate, x, y, bars=True):
         if not len(left):
             break
     return _quotient(pencil, weights, x, y, settled, bars)
-
-
-class _Several:
-    """The `bordered.Factors` of several points, whose right-hand sides are the columns of arrays (size, points)."""
-
-    def __init__(self, factors):
-        self._factors = factors
-        self.uneven = np.array([one.uneven for one in factors])
-
-    def solve(self, f):
-        return np.stack([one.solve(column) for one, column in zip(self._factors, f.T, strict=True)], axis=1)
-
-    def solve_left(self, g):
-        return np.stack([one.solve_left(column) for one, column in zip(self._factors, g.T, strict=True)], axis=1)
 
 
 def _iterate(pencil, weights, factors, x, y):
@@ -220,7 +206,7 @@ def _quotient(pencil, weights, x, y, settled, bars):
         spread += pencil.cut(weights.value * power, y, x)
     variance = np.zeros(norm.shape)
     if bars:
-        variance += (square(weights.value * power) * stack.squares(y, x)).sum(axis=0)  # of matrix entries
+        variance += stack.squares(weights.value * power, y, x)  # of matrix entries
         variance += square(value * power).sum(axis=0) / square(norm)  # of the weights, common to a part
     tail = np.abs(pencil.tail.total(pencil.tail.spread(weights.value * power), pencil.tail.times(x)))
     beyond = tail.reshape(len(pencil.last), -1, *norm.shape).sum(axis=1)

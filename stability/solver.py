@@ -21,7 +21,7 @@ _FAR_BELOW = 1e-15  # relative truncation error that is aimed at with the defaul
 _LEAST = 32  # degree of the smallest table of entries
 _KEPT = 96  # largest degree whose layouts are kept for other flows
 _LAYOUTS, _TABLES = 64, 16  # that are kept: some ten megabytes
-_TOGETHER = 64  # points refined at once: their vectors stay in the cache
+_TOGETHER = 64, 4096  # points refined at once, and those times the degree: bounds the memory
 _EPS = np.finfo(float).eps
 _ROUNDING = 4.0  # standard deviations of the accumulated rounding that the error bar spans
 
@@ -169,8 +169,9 @@ class Solver:
         `rates` (points,) and right and left `vectors` (points, size) of this degree are good guesses.
         """
         modes = []
-        for first in range(0, len(wavenumbers), _TOGETHER):
-            part = slice(first, first + _TOGETHER)
+        count = max(1, min(_TOGETHER[0], _TOGETHER[1] // degree))
+        for first in range(0, len(wavenumbers), count):
+            part = slice(first, first + count)
             eigen = refine_many(self.pencil(degree), self.weights(wavenumbers[part]), rates[part],
                                 *(rows[part] for rows in vectors), self.bars)
             found = [self._mode(k, degree, one) for k, one in zip(wavenumbers[part], eigen.split(), strict=True)]

@@ -32,21 +32,39 @@ class Lines:
         """The sparse matrix (lines, columns) of entries with these values (entries,)."""
         return csr_array((value[self._order], self._column, self._starts), self._shape)
 
-    @cached_property
-    def by_row(self):
-        """Matrix (rows, lines) that sums the lines of each row."""
-        count = len(self.row)
-        return csc_array((np.ones(count), self.row, np.arange(count + 1)), (self._rows, count))
+    def to_rows(self, values):
+        """Sums of the values (lines, ...) of each row, (rows, ...)."""
+        if self._by_row is not None:
+            return self._by_row @ values
+        total = np.zeros((self._rows, *values.shape[1:]), values.dtype)
+        total[self.row] = values
+        return total
 
     @cached_property
-    def by_part(self):
-        """Matrices (blocks, lines) and (parts, blocks) that sum the lines of each part, a block of them at a time.
+    def _by_row(self):
+        """Matrix (rows, lines) that sums the lines of each row, None where there is at most one."""
+        count = len(self.row)
+        if len(np.unique(self.row)) == count:
+            return None
+        return csc_array((np.ones(count), self.row, np.arange(count + 1)), (self._rows, count))
+
+    def to_parts(self, values):
+        """Sums of the values (lines, ...) of each part, (parts, ...), a block of lines at a time.
 
         Partial sums stay short: one sum over all lines would lose a digit to rounding at a large degree.
         """
-        starts = np.searchsorted(self.part, np.arange(self._parts + 1))
-        blocks = np.unique(np.concatenate([starts, np.arange(0, starts[-1], _BLOCK)]))
-        return _sums(blocks), _sums(np.searchsorted(blocks, starts))
+        blocks, firsts, parts = self._by_part
+        total = np.zeros((self._parts, *values.shape[1:]), values.dtype)
+        total[parts] = np.add.reduceat(np.add.reduceat(values, blocks), firsts)
+        return total
+
+    @cached_property
+    def _by_part(self):
+        """First lines of the blocks, first blocks of the parts that have any, and which parts those are."""
+        parts = np.unique(self.part)
+        starts = np.searchsorted(self.part, parts)
+        blocks = np.unique(np.concatenate([starts, np.arange(0, len(self.part), _BLOCK)]))
+        return blocks, np.searchsorted(blocks, starts), parts
 
 
 class Stack:
@@ -74,7 +92,7 @@ class Stack:
 
     def total(self, spread, products):
         """Sum over the parts, weights times products with x: (rows, points)."""
-        return self._lines.by_row @ (spread * products)
+        return self._lines.to_rows(spread * products)
 
     def total_left(self, spread, y):
         """Sum over the parts, weights times y^T part: (columns, points)."""
@@ -82,20 +100,11 @@ class Stack:
 
     def brackets(self, y, products):
         """y^T part x for every part: (parts, points)."""
-        return self._of_parts(y[self._lines.row] * products)
+        return self._lines.to_parts(y[self._lines.row] * products)
 
-    def squares(self, y, x):
-        """Sum over the entries of each part of |y_i entry_ij x_j|^2: (parts, points)."""
-        return self._of_parts(square(y)[self._lines.row] * (self._squares @ square(x)))
-
-    def _of_parts(self, lines):
-        lines_to_blocks, blocks_to_parts = self._lines.by_part
-        return blocks_to_parts @ (lines_to_blocks @ lines)
-
-
-def _sums(starts):
-    """Matrix that sums the numbers from each start up to the next, (starts - 1, numbers)."""
-    return csr_array((np.ones(starts[-1]), np.arange(starts[-1]), starts), (len(starts) - 1, starts[-1]))
+    def squares(self, weights, y, x):
+        """Sum over the entries of all parts of |weight y_i entry_ij x_j|^2: (points,)."""
+        return (self.spread(square(weights)) * square(y)[self._lines.row] * (self._squares @ square(x))).sum(axis=0)
 
 
 def square(z):

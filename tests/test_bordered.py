@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from stability.bordered import Bordered, Factors, Places
+from stability.bordered import Bordered, Factors, ManyFactors, Places
 from stability.stack import Lines, Stack
 
 INTERIOR, BORDER, PARTS = 30, 4, 2
@@ -48,8 +48,8 @@ def test_products_from_either_side(matrices):
     np.testing.assert_allclose(stack.total(spread, products), np.einsum("pn,prc,cn->rn", weights, full, x), atol=1e-12)
     np.testing.assert_allclose(stack.total_left(spread, y), np.einsum("pn,rn,prc->cn", weights, y, full), atol=1e-12)
     np.testing.assert_allclose(stack.brackets(y, products), np.einsum("rn,prc,cn->pn", y, full, x), atol=1e-12)
-    squares = np.einsum("rn,prc,cn->pn", abs(y) ** 2, abs(full) ** 2, abs(x) ** 2)
-    np.testing.assert_allclose(stack.squares(y, x), squares, rtol=1e-12)
+    squares = np.einsum("pn,rn,prc,cn->n", abs(weights) ** 2, abs(y) ** 2, abs(full) ** 2, abs(x) ** 2)
+    np.testing.assert_allclose(stack.squares(weights, y, x), squares, rtol=1e-12)
 
 
 def test_rows_without_entries():
@@ -69,6 +69,26 @@ def test_solves_from_either_side(matrices):
     factors = Factors(bordered, weights)
     np.testing.assert_allclose(factors.solve(matrix @ x), x, atol=1e-11)
     np.testing.assert_allclose(factors.solve_left(matrix.T @ x), x, atol=1e-11)
+
+
+def test_solves_at_many_points_are_those_of_each(matrices):
+    full, entries = matrices
+    bordered = in_a_band(*entries, PARTS, INTERIOR, BORDER)
+    weights, f = np.array([[1.0, 0.5, 2.0], [-0.25, 0.1, 1e9]]), columns(3, 12)
+    f = f if np.iscomplexobj(full) else f.real
+    many = ManyFactors(bordered, weights)
+    assert many.uneven.tolist() == [False, False, True]
+    for index in range(2):
+        one = Factors(bordered, weights[:, index])
+        np.testing.assert_allclose(many.solve(f)[:, index], one.solve(f[:, index]), rtol=1e-9)
+        np.testing.assert_allclose(many.solve_left(f)[:, index], one.solve_left(f[:, index]), rtol=1e-9)
+
+
+def test_a_singular_point_spoils_no_other():
+    bordered = in_a_band(np.array([0, 0, 0, 0, 1]), np.arange(5), np.arange(5), np.ones(5), 2, 3, 2)
+    with np.errstate(all="ignore"):
+        found = ManyFactors(bordered, np.array([[1.0, 0.0], [1.0, 1.0]])).solve(np.ones((5, 2)))
+    np.testing.assert_array_equal(np.isfinite(found).all(axis=0), [True, False])
 
 
 def test_a_singular_matrix_is_named():
