@@ -164,18 +164,14 @@ def surface_branch(solver):
     return Branch(solver, surface_mode(solver.rough(_ROUGH)))
 
 
-def surface_mode(solver, k=_FIRST):
-    """Return the slow surface mode at a wavenumber <= k from which on it obeys its long-wave limit.
+def surface_mode(solver, highest=_FIRST):
+    """Return the slow surface mode at a wavenumber <= `highest` from which on it obeys its long-wave limit.
 
     Value and logarithmic slope must agree there, and again at a fifth and a twenty-fifth of it, no worse: another mode
     can meet one of them by chance.
     """
-    tried = k / _FACTOR ** np.arange(_TRIES)
-    limits, ahead = np.split(solver.flow.long_wave(np.concatenate((tried, 1.01 * tried))), 2)
-    exponents = np.log(ahead / limits) / log(1.01)
-    solver.prepare(tried[:_CONFIRMED])
     agreeing = []
-    for k, limit, exponent in zip(tried.tolist(), limits, exponents, strict=True):
+    for k, limit, exponent in _laws(solver, highest):
         mode, distance = _glance(solver, k, limit, exponent, agreeing[-1][0] if agreeing else None)
         if agreeing and not distance < max(_NO_FARTHER[0] * agreeing[-1][1], _NO_FARTHER[1]):
             agreeing = []
@@ -183,7 +179,7 @@ def surface_mode(solver, k=_FIRST):
             agreeing.append((mode, distance, limit, exponent))
         if len(agreeing) == _CONFIRMED:
             start, _, *law = agreeing[0]
-            mode = solver.solve(start.k, start.rate, (start.degree, start.x, start.y))
+            mode = start if solver.fits(start) else solver.refined(start)
             if _distance(mode, *law) < _AGREEMENT:
                 _check_law(solver.flow, agreeing)
                 return mode
@@ -192,6 +188,16 @@ def surface_mode(solver, k=_FIRST):
         raise ParameterError(f"{solver.flow.name}: long_wave contradicts the equations: no mode obeys it, in value and "
                              f"slope, down to k = {k:.1e}")
     raise ModeLost(f"{solver.flow}: no mode obeys the long-wave limit down to k = {k:.1e}")
+
+
+def _laws(solver, highest):
+    """Yield wavenumbers from the highest down, as many as are tried, with the long-wave limit there and its exponent."""
+    tried = highest / _FACTOR ** np.arange(_TRIES)
+    for first in range(0, _TRIES, _CONFIRMED):
+        few = tried[first: first + _CONFIRMED]
+        solver.prepare(few)
+        limits, ahead = np.split(solver.flow.long_wave(np.concatenate((few, 1.01 * few))), 2)
+        yield from zip(few.tolist(), limits, np.log(ahead / limits) / log(1.01), strict=True)
 
 
 def _check_law(flow, agreeing):

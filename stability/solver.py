@@ -149,7 +149,7 @@ class Solver:
             x, y = transfer(self, vectors, degree) if vectors else (None, None)
             eigen = refine(pencil, self.weights(k), rate, x, y, self.bars)
             mode = self._mode(k, degree, eigen)
-            if glance or self._fits(mode):
+            if glance or self.fits(mode):
                 break
             rate, vectors = eigen.rate, (degree, eigen.x, eigen.y)
         return mode
@@ -161,7 +161,7 @@ class Solver:
     def likely_degree(self, mode):
         """The degree to try first where a rougher solver has found this mode: a higher one where its own is too low."""
         rung = self.degrees.index(mode.degree)
-        return self.degrees[min(rung + (not self._fits(mode)), len(self.degrees) - 1)]
+        return self.degrees[min(rung + (not self.fits(mode)), len(self.degrees) - 1)]
 
     def solve_many(self, wavenumbers, rates, vectors, degree):
         """Return the modes at many wavenumbers at once, None where more work is needed.
@@ -175,11 +175,12 @@ class Solver:
             eigen = refine_many(self.pencil(degree), self.weights(wavenumbers[part]), rates[part],
                                 *(rows[part] for rows in vectors), self.bars)
             found = [self._mode(k, degree, one) for k, one in zip(wavenumbers[part], eigen.split(), strict=True)]
-            modes += [mode if settled and self._fits(mode) else None
+            modes += [mode if settled and self.fits(mode) else None
                       for mode, settled in zip(found, eigen.settled, strict=True)]
         return modes
 
-    def _fits(self, mode):
+    def fits(self, mode):
+        """Whether the truncation error is as small as is aimed at, or below rounding."""
         return mode.truncation <= max(mode.rounding, self.truncation * abs(mode.sigma))
 
     def resolves(self, mode):
