@@ -51,6 +51,11 @@ class Branch:
         return tuple(walk.encounter for walk in self._walks.values() if walk.encounter)[::-1]
 
     @property
+    def uneventful(self):
+        """Whether no other mode was met and nothing lost so far."""
+        return not (self.collisions or self.encounters or self.lost)
+
+    @property
     def segments(self):
         """Lists of nodes by rising k, without a collision inside."""
         down, up = self._walks[-1].segments, self._walks[1].segments
@@ -185,13 +190,13 @@ def surface_mode(solver, highest=_FIRST):
                 return mode
             agreeing = []
     if not shipped(type(solver.flow)):
-        raise ParameterError(f"{solver.flow.name}: long_wave contradicts the equations: no mode obeys it, in value and "
-                             f"slope, down to k = {k:.1e}")
+        raise ParameterError(f"{solver.flow.name}: long_wave contradicts the equations: no mode obeys it, in value "
+                             f"and slope, down to k = {k:.1e}")
     raise ModeLost(f"{solver.flow}: no mode obeys the long-wave limit down to k = {k:.1e}")
 
 
 def _laws(solver, highest):
-    """Yield wavenumbers from the highest down, as many as are tried, with the long-wave limit there and its exponent."""
+    """Yield the wavenumbers that are tried, from the highest down, with the long-wave limit and its exponent."""
     tried = highest / _FACTOR ** np.arange(_TRIES)
     for first in range(0, _TRIES, _CONFIRMED):
         few = tried[first: first + _CONFIRMED]

@@ -18,6 +18,7 @@ from . import chebyshev
 from .branch import surface_branch
 from .errors import ModeLost
 from .listing import near_neutral, same
+from .memory import branch_of
 from .status import is_resolved
 from .tracking import Walk
 from .wellposed import ill_posed_somewhere, numbers
@@ -95,14 +96,15 @@ def surface_look(solver, low, high):
 
     Raises ModeLost where there is no such regime.
     """
-    branch = surface_branch(solver)
-    start = _long_waves(branch, low)
-    reached, rough, finer = branch.reach(high), solver.rough(ROUGH), solver.rough(_FINER)
-    nodes = [node for part in branch.segments for node in part if start <= node.k]
+    rough, finer = solver.rough(ROUGH), solver.rough(_FINER)
+    with branch_of(solver, surface_branch) as branch:
+        start = _long_waves(branch, low)
+        lost = None if branch.reach(high) else branch.why_lost(high)
+        nodes = [node for part in branch.segments for node in part if start <= node.k]
     inside = sum(node.k < high for node in nodes)
     nodes = [_heard(finer, node) for node in nodes[: inside + 1]]
     brackets = [pair for a, b in pairwise(nodes) for pair in _brackets(rough, a, b)]
-    return Look(brackets, (nodes[:1], nodes[-1:] if reached else []), None if reached else branch.why_lost(high))
+    return Look(brackets, (nodes[:1], [] if lost else nodes[-1:]), lost)
 
 
 def look(solver, low, high):

@@ -14,6 +14,7 @@ from .branch import surface_branch
 from .crests import default_mode, depth_of
 from .errors import ModeLost, ParameterError
 from .listing import near_neutral
+from .memory import branch_of
 from .ridges import Landscape, may_turn
 from .thresholds import zero_at
 
@@ -49,7 +50,8 @@ def _modes(plane, k, value):
     """Points at k of the modes that matter at a value."""
     solver = plane.solver(value)
     if default_mode(plane.flow_at(value)) == "surface":
-        found, lost = surface_branch(solver).at([k])
+        with branch_of(solver, surface_branch) as branch:
+            found, lost = branch.at([k])
         if lost:
             raise ModeLost(lost[k])
         modes = found.values()

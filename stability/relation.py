@@ -13,6 +13,7 @@ from .eigenvalue import Eigenvalues
 from .errors import ModeLost, naming
 from .flows.base import check_flow
 from .listing import leading_modes, listed
+from .memory import branch_of
 from .mode import Mode, require
 from .output import Row
 from .record import Record
@@ -181,26 +182,25 @@ def default_mode(flow: "Flow") -> str:
 
 def _surface(solver, wavenumbers):
     """Follow the surface mode from its long-wave limit."""
-    yield from _followed(lambda: surface_branch(solver), wavenumbers)
+    yield from _followed(solver, surface_branch, wavenumbers)
 
 
 def _leading(solver, wavenumbers):
     """Follow the mode that leads at the flow's own wavenumber."""
-    yield from _followed(lambda: leading_branch(solver), wavenumbers)
+    yield from _followed(solver, leading_branch, wavenumbers)
 
 
-def _followed(start, wavenumbers):
+def _followed(solver, start, wavenumbers):
+    told = set()
     try:
-        branch = start()
+        with branch_of(solver, start) as branch:
+            for first in range(0, len(wavenumbers), _PORTION):
+                found, lost = branch.at(wavenumbers[first: first + _PORTION])
+                met = [event for event in (*branch.collisions, *branch.encounters) if event not in told]
+                told |= set(met)
+                yield found, lost, tuple(met)
     except ModeLost as reason:
         yield {}, dict.fromkeys(wavenumbers.tolist(), str(reason)), ()
-        return
-    told = set()
-    for first in range(0, len(wavenumbers), _PORTION):
-        found, lost = branch.at(wavenumbers[first: first + _PORTION])
-        met = [event for event in (*branch.collisions, *branch.encounters) if event not in told]
-        told |= set(met)
-        yield found, lost, tuple(met)
 
 
 def leading_branch(solver):

@@ -23,6 +23,7 @@ _KEPT = 96  # largest degree whose layouts are kept for other flows
 _LAYOUTS, _TABLES = 64, 16  # that are kept: some ten megabytes
 _TOGETHER = 64, 4096  # points refined at once, and those times the degree: bounds the memory
 _EPS = np.finfo(float).eps
+_REMEMBERED = 10_000  # wavenumbers whose functions and weights are kept
 _ROUNDING = 4.0  # standard deviations of the accumulated rounding that the error bar spans
 
 
@@ -106,6 +107,8 @@ class Solver:
             return
         symbols = {"k": (k, np.ones_like(k), np.zeros_like(k)), **self.flow.evaluate(k)}
         weights = weights_of(self.assembly.system.structure, symbols)
+        if len(self._known) > _REMEMBERED:
+            self._known.clear()
         rows = weights.value.T.copy(), weights.slope.T.copy(), weights.spread.T.copy()
         for index, one in enumerate(k.tolist()):
             self._known[one] = symbols, rows, index

@@ -8,6 +8,8 @@ import random
 import signal
 import time
 
+import pytest
+
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 signal.signal(signal.SIGINT, signal.default_int_handler)
 SEED = int(os.environ.setdefault("STABILITY_TEST_SEED", str(time.time_ns() % 10**6)))  # the same in all processes
@@ -22,3 +24,10 @@ def pytest_collection_modifyitems(items):
     generator = random.Random(SEED)
     order = {name: generator.random() for name in sorted({item.nodeid for item in items})}
     items.sort(key=lambda item: (item.nodeid.partition("::")[0], order[item.nodeid]))
+
+
+@pytest.fixture(autouse=True)
+def without_memory(request, monkeypatch):
+    """Each question of a test is answered anew, but where the test is about what is remembered."""
+    if "remembered" not in request.fixturenames:
+        monkeypatch.setattr("stability.memory.KEPT", 0)
