@@ -130,7 +130,7 @@ class Branch:
             gaps.setdefault((id(nodes[0]), index), (nodes, index, []))[2].append(k)
         found, between = {}, {}
         for (segment, _), (nodes, index, inside) in gaps.items():
-            chosen = inside if len(inside) <= _FEW else [inside[0], inside[len(inside) // 2], inside[-1]]
+            chosen = inside if len(inside) <= _FEW else [inside[0], inside[-1]]
             finer, rest = between.setdefault(segment, ([], []))
             for k in chosen:
                 found[k] = self._between(nodes, index, k, finer[-1] if finer else None)
