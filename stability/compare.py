@@ -5,13 +5,9 @@ the way from the long-wave limit, error bars where a method has them. A dense so
 neighbours and is timed alone. Each time is the shortest of several runs.
 """
 
-import importlib.util
-from contextlib import suppress
-from dataclasses import dataclass
-from functools import cache
+from dataclasses import dataclass, replace
 from math import inf
-from pathlib import Path
-from time import process_time
+from time import monotonic, process_time
 from typing import Any, ClassVar
 
 import numpy as np
@@ -25,7 +21,7 @@ from .record import Record
 from .relation import dispersion
 from .solver import DEGREES, Solver
 from .spectra import spectrum
-from .status import RESOLVED
+from .status import INTERRUPTED, RESOLVED
 from .symbols import value_text
 from .threads import one_thread
 
@@ -37,6 +33,8 @@ POINTS, SPAN = 201, 2.0  # of the sweep, from k / SPAN to k * SPAN
 
 _SECONDS = 0.15  # spent on repeating each measurement, at least
 _REPEATS = 3
+_SLOWER = 2.0  # time of a measurement over that of the one before it, as it is expected
+_ABSENT = object()  # there is no such method for this flow
 _LOST = 0.5  # relative error beyond which a method has found another mode
 
 
@@ -64,24 +62,31 @@ class Measurement:
 
 @dataclass(frozen=True, repr=False)
 class Comparison(Record):
-    """All measurements of one problem. `failed` lists (method, setting) without a usable result."""
+    """All measurements of one problem. `failed` lists (method, setting) without a usable result, `skipped` those that
+    there was no time for; `pending` are methods that were still to come when it was stopped.
+    """
 
     flow: Any
     k: float
     reference: Reference
     measurements: tuple
     failed: tuple
+    pending: tuple = ()
+    skipped: tuple = ()
     dimension: ClassVar[str] = "measurement"
 
     def rows(self) -> list[Row]:
         return [{"method": one.method, "setting": one.setting, "growth_rate": one.sigma.real,
                  "frequency": one.sigma.imag, "error": one.error, "reported": one.reported, "seconds": one.seconds,
-                 "unknowns": one.unknowns, "status": RESOLVED} for one in self.measurements]
+                 "unknowns": one.unknowns, "status": RESOLVED} for one in self.measurements] + \
+            [{"method": method, "setting": "-", "growth_rate": None, "frequency": None, "error": None, "reported": None,
+              "seconds": None, "unknowns": None, "status": INTERRUPTED} for method in self.pending]
 
     def notes(self) -> list[str]:
         known = self.reference
         return [f"reference: sigma = {known.sigma:.15g}, {known.source}",
-                *(f"{method}, {setting}: no result" for method, setting in self.failed)]
+                *(f"{method}, {setting}: no result" for method, setting in self.failed),
+                *(f"{method}, {setting}: not measured, the time is up" for method, setting in self.skipped)]
 
     def about(self) -> dict[str, Any]:
         return {"k": self.k}
@@ -107,23 +112,60 @@ class Comparison(Record):
                       Axis("relative_error", "relative error (thin: reported)", "log"), tuple(curves)),)
 
 
-@one_thread
-def compare(flow, k, methods=None, report=None):
-    """Return the `Comparison` of the methods of this package at wavenumber k, or of those named in `methods`."""
-    chosen = METHODS if methods is None else {name: METHODS[name] for name in methods}
-    mode = target(flow, k)
-    known = reference(flow, k, mode)
-    found, failed = [], []
-    for count, (name, method) in enumerate(chosen.items(), 1):
-        for setting, result in method(flow, mode):
-            if result is None or abs(result[0] - known.sigma) > _LOST * abs(known.sigma):
-                failed.append((name, setting))
+def compare(flow, k, methods=None, report=None, *, known=None, points=None, budget=inf):
+    """Return the `Comparison` of the methods of this package at wavenumber k, or of those named in `methods`.
+
+    Errors are measured against the `Reference` `known`, by default collocation's own value. `points` (odd) are those of
+    each sweep. After `budget` seconds nothing is begun that would take longer than what is left. `report(done, total)`
+    is called on the way.
+    """
+    for found in comparisons(flow, k, methods, report, known=known, points=points, budget=budget):  # noqa: B007
+        pass
+    return found
+
+
+def comparisons(flow, k, methods=None, report=None, *, known=None, points=None, budget=inf):
+    """Yield the comparison of `compare` as it grows: before the first measurement, and after each."""
+    begun = monotonic()
+    mode = one_thread(target)(flow, k)
+    known = known or reference(mode)
+    chosen = list(METHODS if methods is None else methods)
+    total = sum(len(settings()) for settings, _ in (METHODS[name] for name in chosen))
+    found = Comparison(flow, float(k), known, (), (), tuple(chosen))
+    yield found
+    count = 0
+    for name in chosen:
+        settings, method = METHODS[name]
+        last = 0.0
+        for setting in settings():
+            count += 1
+            now = monotonic()
+            label = _label(setting)
+            if now - begun + _SLOWER * last > budget:
+                found = replace(found, skipped=(*found.skipped, (name, label)))
             else:
-                sigma, reported, seconds, unknowns = result
-                found.append(Measurement(name, setting, sigma, abs(sigma - known.sigma), reported, seconds, unknowns))
-        if report:
-            report(count, len(chosen))
-    return Comparison(flow, float(k), known, tuple(found), tuple(failed))
+                result = one_thread(method)(flow, mode, setting, points or POINTS)
+                found, last = _with(found, name, label, result), monotonic() - now
+            if report:
+                report(count, total)
+            yield replace(found, pending=found.pending[1:] if setting == settings()[-1] else found.pending)
+        found = replace(found, pending=found.pending[1:])
+
+
+def _label(setting):
+    return f"degree {setting}" if isinstance(setting, int) else f"residual {setting:g}"
+
+
+def _with(found, name, label, result):
+    """The comparison with the result of one more measurement, or with its failure."""
+    known = found.reference
+    if result is _ABSENT:
+        return found
+    if result is None or abs(result[0] - known.sigma) > _LOST * abs(known.sigma):
+        return replace(found, failed=(*found.failed, (name, label)))
+    sigma, reported, seconds, unknowns = result
+    one = Measurement(name, label, sigma, abs(sigma - known.sigma), reported, seconds, unknowns)
+    return replace(found, measurements=(*found.measurements, one))
 
 
 def target(flow, k):
@@ -133,28 +175,9 @@ def target(flow, k):
     return spectrum(flow, k, 1).modes[0]
 
 
-def reference(flow, k, mode):
-    """The independent 30-digit value where this flow has one (in a checkout with its tests), else collocation's own."""
-    module = _references()
-    parameters = {name: value for name, value in vars(flow).items() if name != "fluid"}
-    if module and hasattr(module, flow.name):
-        with suppress(ArithmeticError):  # it takes too many digits, or the mode is not resolved
-            value = complex(getattr(module, flow.name)(**parameters, k=k, guess=mode.sigma))
-            return Reference(value, abs(value) * 1e-16, "power series in 30-digit arithmetic")
-    return Reference(mode.sigma, mode.error, f"collocation at degree {mode.degree}")
-
-
-@cache
-def _references():
-    path = Path(__file__).resolve().parents[1] / "tests" / "references.py"
-    if not path.exists():
-        return None
-    spec = importlib.util.spec_from_file_location("references", path)
-    assert spec
-    assert spec.loader
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+def reference(mode):
+    """Collocation's own value of a mode, at the degree that its tolerance asks for."""
+    return Reference(mode.sigma, mode.error, f"collocation at degree {mode.degree}, error below {mode.error:.1e}")
 
 
 def timed(function):
@@ -171,22 +194,20 @@ def timed(function):
     return value, best
 
 
-def _collocation(flow, mode):
+def _collocation(flow, mode, degree, points):
     """This package's own method at one degree: the mode followed through the sweep from where it starts."""
-    for degree in COLLOCATION_DEGREES:
-        try:
-            found, seconds = timed(lambda: _followed(flow, mode, degree))  # noqa: B023
-        except ModeLost:
-            yield f"degree {degree}", None
-            continue
-        yield f"degree {degree}", (found.sigma, found.error, seconds / POINTS, len(found.x))
+    try:
+        found, seconds = timed(lambda: _followed(flow, mode, degree, points))
+    except ModeLost:
+        return None
+    return found.sigma, found.error, seconds / points, len(found.x)
 
 
-def _followed(flow, mode, degree):
+def _followed(flow, mode, degree, points):
     """The mode at mode.k after a sweep at one degree, all included."""
     solver = Solver(flow, 1.0, degree)
     solver.degrees = (degree,)
-    sweep = wavenumbers(mode.k)
+    sweep = wavenumbers(mode.k, points)
     solver.prepare(sweep)
     first = sweep[0]
     start = surface_mode(solver, first) if flow.has_surface_mode() else solver.solve(first, _guess(mode, first))
@@ -201,52 +222,54 @@ def _guess(mode, k):
     return mode.rate + (k - mode.k) * mode.rate_slope
 
 
-def wavenumbers(k):
+def wavenumbers(k, points=None):
     """The sweep, with k in its middle."""
-    values = np.geomspace(k / SPAN, k * SPAN, POINTS)
-    values[POINTS // 2] = k
+    points = points or POINTS
+    values = np.geomspace(k / SPAN, k * SPAN, points)
+    values[points // 2] = k
     return values
 
 
-def _dense(flow, mode):
+def _dense(flow, mode, degree, points):
     """All modes at once: the dense eigenvalue problem of the same matrices, unrefined."""
     solver = Solver(flow)
     symbols = solver.symbols(mode.k)
-    for degree in DENSE_DEGREES:
-        rates, seconds = timed(lambda: finite_rates(solver, degree, symbols))  # noqa: B023
-        nearest = rates[np.argmin(np.abs(rates - mode.rate))]
-        yield f"degree {degree}", (complex(solver.width(mode.k) * nearest), None, seconds, solver.pencil(degree).size)
+    rates, seconds = timed(lambda: finite_rates(solver, degree, symbols))
+    nearest = rates[np.argmin(np.abs(rates - mode.rate))]
+    return complex(solver.width(mode.k) * nearest), None, seconds, solver.pencil(degree).size
 
 
-def _bvp(flow, mode):
-    """Continuation by solve_bvp through the sweep, at several tolerances of solve_bvp."""
-    yield from _continued(flow, mode, RESIDUALS, None)
+def _bvp(flow, mode, residual, points):
+    """Continuation by solve_bvp through the sweep, at one tolerance of solve_bvp."""
+    return _continued(flow, mode, residual, None, points)
 
 
-def _bvp_thesis(flow, mode):
+def _bvp_thesis(flow, mode, residual, points):
     """The thesis's setting, from its own tolerance on; the bias of the problem stays."""
     from .thesis import thesis_setting
 
     try:
         setting = thesis_setting(flow)
     except ParameterError:
-        return
-    yield from _continued(flow, mode, THESIS_RESIDUALS, setting)
+        return _ABSENT
+    return _continued(flow, mode, residual, setting, points)
 
 
-def _continued(flow, mode, residuals, setting):
+def _continued(flow, mode, residual, setting, points):
     from .continuation import continue_in_k
 
-    sweep = wavenumbers(mode.k)
+    sweep = wavenumbers(mode.k, points)
     start = None if flow.has_surface_mode() else _guess(mode, sweep[0]) * sweep[0] ** (1 + flow.order)
-    for residual in residuals:
-        found, seconds = timed(lambda: continue_in_k(flow, sweep, residual=residual, guess=start,  # noqa: B023
-                                                     setting=setting))
-        if found.lost:
-            yield f"residual {residual:g}", None
-            continue
-        point = found.points[POINTS // 2]
-        yield f"residual {residual:g}", (point.sigma, point.error, seconds / POINTS, point.unknowns)
+    found, seconds = timed(lambda: continue_in_k(flow, sweep, residual=residual, guess=start, setting=setting))
+    if found.lost:
+        return None
+    point = found.points[points // 2]
+    return point.sigma, point.error, seconds / points, point.unknowns
 
 
-METHODS = {"collocation": _collocation, "dense": _dense, "bvp": _bvp, "bvp-thesis": _bvp_thesis}
+METHODS = {  # settings, read when asked for, and the measurement of one
+    "collocation": (lambda: COLLOCATION_DEGREES, _collocation),
+    "dense": (lambda: DENSE_DEGREES, _dense),
+    "bvp": (lambda: RESIDUALS, _bvp),
+    "bvp-thesis": (lambda: THESIS_RESIDUALS, _bvp_thesis),
+}

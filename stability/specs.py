@@ -7,6 +7,7 @@ import numpy as np
 from .errors import ParameterError
 
 _MOST = 100_000
+_LEAST = 1e-3  # start of the range that is proposed, relative to its end
 
 
 def parse_spec(text, name, positive=True, unbounded=False):
@@ -14,7 +15,7 @@ def parse_spec(text, name, positive=True, unbounded=False):
 
     `unbounded` admits inf in a list.
     """
-    values = _range(text, name) if ":" in text else \
+    values = _range(text, name, positive) if ":" in text else \
         np.array([_number(part, name, unbounded) for part in text.split(",")])
     if positive and not np.all(values > 0):
         raise ParameterError(f"{name}: values must be positive (got {min(values):g})")
@@ -29,7 +30,7 @@ def parse_one(text, name, what="value"):
     return float(values[0])
 
 
-def _range(text, name):
+def _range(text, name, positive):
     parts = text.split(":")
     linear = parts[3:] == ["lin"]
     if len(parts) != 3 and not linear:
@@ -38,12 +39,17 @@ def _range(text, name):
     count = int(parts[2]) if parts[2].isdecimal() else 0
     if not 2 <= count <= _MOST:
         raise ParameterError(f"{name}: the number of points must be an integer from 2 to {_MOST} (got {parts[2]!r})")
+    if start <= 0 < stop and (positive or not linear):
+        would_do = f"{stop * _LEAST:g}:{stop:g}:{count}"
+        others = ":lin" if positive and linear else "" if positive else f", or {text}:lin for equal steps"
+        kind = "a range of positive values" if linear else "a logarithmic range"
+        raise ParameterError(f"{name}: {kind} starts above 0 (got {text!r}); {would_do}{others} would do")
     if not start < stop:
         raise ParameterError(f"{name}: a range must rise, a < b (got {text!r})")
     if linear:
         return np.linspace(start, stop, count)
     if start <= 0:
-        raise ParameterError(f"{name}: a log-spaced range needs a > 0 (got {text!r}); add :lin for equal steps")
+        raise ParameterError(f"{name}: a logarithmic range starts above 0 (got {text!r}); add :lin for equal steps")
     return np.geomspace(start, stop, count)
 
 

@@ -2,17 +2,19 @@
 
 import csv
 import json
+import subprocess
 import sys
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import references
 
 from stability import flows
 from stability.cli import main
-from stability.compare import compare, reference, target, timed, wavenumbers
+from stability.compare import Reference, compare, comparisons, reference, target, timed, wavenumbers
 from stability.flows import FLOWS
+from stability.verbs import compare as verb
 
 
 @pytest.fixture(autouse=True)
@@ -28,11 +30,17 @@ def short(monkeypatch):
     monkeypatch.setattr(module, "THESIS_RESIDUALS", (1e-3,))
 
 
+def independent(flow, k, mode):
+    """The 30-digit value of a mode as a Reference."""
+    parameters = {name: value for name, value in vars(flow).items() if name != "fluid"}
+    value = complex(getattr(references, flow.name)(**parameters, k=k, guess=mode.sigma))
+    return Reference(value, abs(value) * 1e-16, "power series in 30-digit arithmetic")
+
+
 @pytest.mark.parametrize(("flow", "k"), [(flows.Vortex(), 2.0), (flows.Dune(), 1.0)])
 def test_reported_errors_hold_and_collocation_is_exact(flow, k):
-    found = compare(flow, k, ("collocation", "dense", "bvp"))
-    assert found.reference.source == "power series in 30-digit arithmetic"
-    assert found.failed == ()
+    found = compare(flow, k, ("collocation", "dense", "bvp"), known=independent(flow, k, target(flow, k)))
+    assert found.failed == found.skipped == found.pending == ()
     for one in found.measurements:
         assert one.reported is None or one.error <= one.reported
         assert one.seconds > 0
@@ -54,19 +62,13 @@ POISEUILLE = -1j * (0.237526488820470107446579 + 0.00373967062297940993222j)  # 
 @pytest.mark.parametrize("flow", FLOWS.values())
 def test_every_flow_has_an_independent_reference(flow):
     mode = target(flow(), 1.0)
-    known = reference(flow(), 1.0, mode)
-    assert known.source == "power series in 30-digit arithmetic"
+    known = independent(flow(), 1.0, mode)
     assert abs(known.sigma - mode.sigma) < mode.error
 
 
-def test_where_the_independent_reference_gives_up_collocation_is_named(monkeypatch):
-    def give_up(Re, k, guess):
-        raise ArithmeticError("too many bits")
-
-    module = sys.modules["stability.compare"]
-    monkeypatch.setattr(module, "_references", lambda: SimpleNamespace(poiseuille=give_up))
+def test_the_reference_is_collocation_unless_told_otherwise():
     flow = flows.Poiseuille(Re=1e4)
-    known = reference(flow, 1.0, target(flow, 1.0))
+    known = reference(target(flow, 1.0))
     assert known.source.startswith("collocation at degree")
     assert abs(known.sigma - POISEUILLE) < known.error
 
@@ -97,6 +99,37 @@ def test_command(capsys, tmp_path):
     assert {row["method"] for row in rows} == {"collocation", "dense", "bvp", "bvp-thesis"}
     assert "reference: sigma = -0.452930272740044" in captured.err
     assert picture.stat().st_size > 10_000
+
+
+def test_ctrl_c_keeps_what_is_measured(capsys, monkeypatch):
+    def stopped(*arguments, **options):
+        for count, found in enumerate(comparisons(*arguments, **options)):
+            if count == 5:  # the first of the dense ones is under way
+                raise KeyboardInterrupt
+            yield found
+
+    monkeypatch.setattr(sys.modules["stability.compare"], "comparisons", stopped)
+    assert main(["compare", "vortex", "--k", "2", "--json", "--quiet"]) == 130
+    rows = json.loads(capsys.readouterr().out)["rows"]
+    assert [(row["method"], row["status"]) for row in rows] == [
+        *[("collocation", "resolved")] * 3, ("dense", "resolved"),
+        *((name, "interrupted") for name in ("dense", "bvp", "bvp-thesis"))]
+
+
+def test_the_time_is_kept():
+    """Nothing is begun that would take too long: what was left out is said."""
+    found = compare(flows.Vortex(), 2.0, budget=0.0)
+    assert found.measurements == ()
+    assert len(found.skipped) == 3 + 3 + 2 + 1
+    assert found.notes()[-1] == "bvp-thesis, residual 0.001: not measured, the time is up"
+    assert verb._BUDGET < 20
+
+
+def test_nothing_comes_from_the_tests():
+    code = ("import sys; from stability.compare import compare; from stability import flows; "
+            "compare(flows.Vortex(), 2.0, budget=0.0); print([n for n in sys.modules if 'references' in n])")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"
 
 
 def test_command_takes_one_wavenumber(capsys):
