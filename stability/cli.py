@@ -34,14 +34,45 @@ def main(argv=None):
 
 
 def _run(words):
-    arguments, unknown = _parser(words).parse_known_args(words)
+    parser = _parser(words)
+    try:
+        arguments, unknown = parser.parse_known_args(words)
+    except ParameterError:
+        for option in _strange(parser, words):  # what is missing may be what is misspelt
+            hint = _near(parser, words, option)
+            if hint:
+                raise _unknown(option, hint) from None
+        raise
     if unknown:
         from .verbs.common import nearest_flag
 
-        kind = "option" if unknown[0].startswith("-") else "argument"
-        raise ParameterError(f"unknown {kind} {unknown[0]!r}{nearest_flag(arguments, unknown[0])}; "
-                             "see --help, and for parameters: stability flows FLOW")
+        raise _unknown(unknown[0], _near(parser, words, unknown[0]) or nearest_flag(arguments, unknown[0]))
     return arguments.run(arguments)
+
+
+def _unknown(text, hint):
+    kind = "option" if text.startswith("-") else "argument"
+    return ParameterError(f"unknown {kind} {text!r}{hint}; see --help, and for parameters: stability flows FLOW")
+
+
+def _near(parser, words, option):
+    """A hint at the option of the verb that is meant, if one is near."""
+    from .verbs.common import nearest_option
+
+    return nearest_option(option, _options(parser, words))
+
+
+def _options(parser, words):
+    """The options of the verb that is asked for."""
+    verbs = next(action.choices for action in parser._actions if isinstance(action, argparse._SubParsersAction))
+    return list(verbs[words[0]]._option_string_actions) if words and words[0] in verbs else []
+
+
+def _strange(parser, words):
+    """Options that the verb has not."""
+    known = _options(parser, words)
+    return [text for text in words[1:] if known and text.startswith("--") and len(text) > 2
+            and text.partition("=")[0] not in known]
 
 
 def _fail(reason, status):
@@ -59,6 +90,14 @@ class _Parser(argparse.ArgumentParser):
         for action in (None, "store"):
             self.register("action", action, Once)
         self.set_defaults(given=frozenset())
+
+    def _check_value(self, action, value):
+        if isinstance(action, argparse._SubParsersAction) and value not in action.choices:
+            from .flows.catalogue import nearest
+
+            raise ParameterError(f"unknown verb {value!r}{nearest(value, action.choices)}; verbs: "
+                                 f"{', '.join(action.choices)}")
+        super()._check_value(action, value)
 
     def error(self, message):
         raise ParameterError(f"{message} (see: {self.prog} --help)")

@@ -3,8 +3,10 @@
 import argparse
 import os
 from dataclasses import fields, replace
+from math import degrees
 from pathlib import Path
 
+from ..checks import as_number
 from ..errors import ParameterError
 from ..flows import FLOWS, find
 from ..flows.base import allowed, check_flow
@@ -22,6 +24,7 @@ SPEC = "a number, a list a,b,c, or a range a:b:n (log-spaced) or a:b:n:lin"
 INTERRUPTED_STATUS = 130  # of the command
 FORMS = {".csv": "csv", ".json": "json", ".nc": "netcdf"}  # that the ending of a file stands for
 _TEXT = "", ".txt"  # endings of a table
+_RADIANS = 1.6  # degrees: a smaller slope may be one in radians, of which a right angle has 1.57
 _PLOTS = (".png", ".pdf", ".svg")
 FLOW = f"one of {', '.join(FLOWS)}, or your own: path/to/file.py:Class or package.module:Class"
 _NUMBER = "V"  # metavar of a numeric parameter of a flow
@@ -108,7 +111,11 @@ def _flow_named(verb, words):
 
 def flag(item):
     """Command-line flag of a parameter."""
-    return "--" + item.name.replace("_", "-")
+    return flag_of(item.name)
+
+
+def flag_of(name):
+    return "--" + name.replace("_", "-")
 
 
 def nearest_flag(arguments, unknown):
@@ -118,6 +125,13 @@ def nearest_flag(arguments, unknown):
     flow = find(arguments.flow)
     flags = [flag(item) for item in fields(flow)]
     return nearest(unknown.partition("=")[0], flags) or f"; {flow.name} has {', '.join(flags) or 'no parameters'}"
+
+
+def nearest_option(unknown, known):
+    """A hint at the option of a verb that an unknown one may stand for, in the other case of letters first."""
+    name = unknown.partition("=")[0]
+    same = [option for option in known if option.lower() == name.lower()]
+    return nearest(same[0], same) if same else nearest(name, known)
 
 
 def k_option(verb):
@@ -172,6 +186,8 @@ def report(arguments, compute):
     missing = [row for row in rows if row["status"] == INTERRUPTED]
     failed = [row for row in rows if not is_settled(row["status"]) and row["status"] != INTERRUPTED]
     if not arguments.quiet:
+        for note in _radians(arguments):
+            say(f"stability: {note}")
         for note in header.get("notes", ()):
             say(f"stability: {note}")
         if failed:
@@ -196,6 +212,17 @@ def report(arguments, compute):
             for note in draw(result, temporary, look_of(arguments)):
                 say(f"stability: {note}")
     return INTERRUPTED_STATUS if missing else 3 if failed else 0
+
+
+def _radians(arguments):
+    """A hint where an angle in degrees is so small that it may have been meant in radians."""
+    given = {key.partition(" ")[2]: value for key, value in vars(arguments).items()
+             if key.startswith("parameter ") and value is not None}
+    for name, text in given.items():
+        value = as_number(text) if name.endswith("_deg") else None
+        if value is not None and 0 < value < _RADIANS:
+            yield (f"{name} = {value:g} is an angle in degrees; if it is meant in radians, give "
+                   f"{flag_of(name)} {degrees(value):.6g}")
 
 
 def check_files(arguments):
