@@ -19,6 +19,7 @@ _FEWEST = 6  # points of a fit, if there are as many
 _SHRINK = 0.9  # of the number of points from one attempt to the next
 _GOOD = 1.0  # misfit of a fit that explains the difference
 _BETTER = 3.0  # a lower power is needed only if the misfit without it is this many times as large
+_ASTRAY, _ASTRAY_POINTS = 0.5, 4  # powers by which numerics rise more slowly than a series that is of no use there
 _STANDARD_ERRORS = 5.0  # and if its coefficient is this many times its error
 
 
@@ -46,22 +47,28 @@ class Explanation:
     first          the fit that explains it, None where none does
     last           where that needs no lower power: the fit from the last coefficient of the series on
     coefficients   {power: coefficient of the series}
+    astray         whether the numerics do not even rise like the first term of the series: nothing is then said of its
+                   coefficients, for far beyond its range the difference is the series itself
     """
 
     expected: float
     first: Fit | None
     last: Fit | None
     coefficients: dict[float, float]
+    astray: bool = False
 
     @property
     def coefficient_differs(self) -> bool:
-        return self.first is not None and self.first.power != self.expected
+        return not self.astray and self.first is not None and self.first.power != self.expected
 
     @property
     def k_too_large(self) -> bool:
-        return self.first is not None and self.first.power == self.expected
+        return not self.astray and self.first is not None and self.first.power == self.expected
 
     def __str__(self) -> str:
+        if self.astray:
+            return (f"k is too large for this expansion: the numerics do not even rise like its first term, "
+                    f"k^{_power(min(self.coefficients))}; take smaller k")
         if self.first is None:
             return "a few powers of k do not explain the difference: take more k, smaller ones, or give errors"
         if self.coefficient_differs:
@@ -99,6 +106,15 @@ def explain(k, difference, error, below, expected: float, step: float, coefficie
             if found.misfit <= _GOOD and found.misfit * _BETTER < usual.misfit and found.stands_out:
                 return Explanation(expected, found, None, coefficients)
     return Explanation(expected, None, None, coefficients)
+
+
+def is_astray(k, values, coefficients) -> bool:
+    """Whether real values of shape (points,) rise more slowly than the first term of the series at the smallest k."""
+    few = np.abs(values[:_ASTRAY_POINTS])
+    if not coefficients or not few.all():
+        return False
+    slope = np.polyfit(np.log(k[:_ASTRAY_POINTS]), np.log(few), 1)[0]
+    return bool(slope < min(coefficients) - _ASTRAY or np.ptp(np.sign(values[:_ASTRAY_POINTS])) > 0)
 
 
 def _windows(points):

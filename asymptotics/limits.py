@@ -11,11 +11,11 @@ imaginary parts are judged separately too: the larger one would hide a wrong coe
 5.0
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .explain import BEND, Explanation, explain, extrapolate
+from .explain import BEND, Explanation, explain, extrapolate, is_astray
 from .series import vanishes
 
 TOLERANCE = 0.05
@@ -359,6 +359,8 @@ def _part(name, claim, k, numeric, series, floor, correction, tolerance) -> Part
     why = None
     if claim.towards > 0:
         why = explain(k, difference, floor, claim.below[name], expected, claim.step, claim.coefficients[name])
+        astray = is_astray(k, getattr(numeric, name)[heard], claim.coefficients[name])
+        why = replace(why, astray=astray and not abs(order - expected) <= tolerance)
     return Part(name, expected, order, tolerance, claim.towards, why)
 
 
