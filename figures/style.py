@@ -28,7 +28,7 @@ def main(script, compute, draw):
     data = one_thread(compute)(arguments.fast)
     arguments.out.mkdir(parents=True, exist_ok=True)
     target = arguments.out / Path(script).stem
-    with plt.rc_context(STYLE):
+    with plt.rc_context({name: value for name, value in STYLE.items() if name != "axes.prop_cycle"}):
         draw(data).savefig(target.with_suffix(".png"), metadata={"Software": None})
     write_csv(target.with_suffix(".csv"), data)
     print(target.with_suffix(".png"))

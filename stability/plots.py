@@ -1,7 +1,7 @@
 """The renderer: panels become figures, without a display and ready for print. It knows no result by name.
 
-Colours, line styles and markers are given out by matplotlib's cycle of the axes, so that successive results on the same
-axes differ, in grey print too, and so that a style sheet may say otherwise. Text stays text in PDF (Type 42) and SVG.
+Colours and line styles are given out by matplotlib's cycle of the axes, so that successive results on the same axes
+differ, in grey print too, and so that a style sheet may say otherwise. Text stays text in PDF (Type 42) and SVG.
 """
 
 from collections.abc import Sequence
@@ -30,7 +30,7 @@ CURVES = len(COLOURS) * len(LINES)  # that differ in colour or line style
 def _cycle():
     """All pairs of colours and line styles: their numbers have no common divisor."""
     return cycler(**{name: list(islice(forever(values), CURVES)) for name, values in
-                     (("color", COLOURS), ("linestyle", LINES), ("marker", MARKERS))})
+                     (("color", COLOURS), ("linestyle", LINES))})
 
 
 FONTS: dict[Any, Any] = {"pdf.fonttype": 42, "ps.fonttype": 42, "svg.fonttype": "none"}  # text, not its outlines
@@ -153,11 +153,11 @@ def _curve(axis, curve, colour, line_options):
     style: dict[str, Any] = {"label": curve.label, **_SHAPES[curve.kind]}
     if curve.fade < 1:
         style["alpha"] = curve.fade
+    if curve.kind == POINTS:  # a marker of its own among the points that are there
+        style["marker"] = MARKERS[sum(line.get_marker() in MARKERS for line in axis.lines) % len(MARKERS)]
     if colour is not None:
         style = {"linestyle": "-", "marker": "", **style, "color": colour}
     (line,) = axis.plot(curve.x, curve.y, **{**style, **line_options})
-    if curve.kind in (POINTS, OTHERS) and line.get_marker() in ("", "None", None, " "):
-        line.set_marker("o")  # the cycle of the axes has none
     _bars(axis, curve, line.get_color())
     if curve.status is not None:
         _doubts(axis, curve, line.get_color())
