@@ -5,7 +5,7 @@ from .common import add_verb, flow_of, report
 from .progress import Bar
 
 _POINTS = 21  # of the sweeps: enough for a time per eigenvalue
-_BUDGET = 14.0  # seconds after which nothing long is begun
+_BUDGET = 10.0  # seconds after which nothing long is begun
 
 
 def add(verbs):
