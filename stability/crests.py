@@ -114,6 +114,9 @@ def look(solver, low, high):
 
 
 def _look(solver, low, high):
+    high = min(high, solver.flow.shortest())
+    if not low < high:
+        return Look([], ([], []), None)
     grid = np.geomspace(low, high, 1 + max(1, ceil(log(high / low) / _STEP))).tolist()
     rough, rung, columns, trouble = solver.rough(ROUGH), 0, [], None
     depth = depth_of(solver.flow)

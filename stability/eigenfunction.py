@@ -65,7 +65,7 @@ class Eigenfunction:
         self.layers = flow.layers(SimpleNamespace(**{name: value[0] for name, value in solver.symbols(mode.k).items()}))
         self._base = [resolved(flow, self.layers, index, _velocities) for index in range(len(self.layers))]
         thickness = [float(layer.height(np.array(1.0))) for layer in self.layers]
-        self.edges = flow.bottom + np.concatenate(([0.0], np.cumsum(thickness)))
+        self.edges = flow.lowest + np.concatenate(([0.0], np.cumsum(thickness)))
         self.high = self.edges[-1]
         self.low = 2 * self.edges[0] - self.high if self.reflection else self.edges[0]
         self._slack = _ROUNDING * (self.high - self.low)

@@ -17,7 +17,7 @@ from .checks import check_flag, check_range, check_wavenumbers, shown
 from .critical import critical_zeros
 from .crossings import zeros_at
 from .errors import ModeLost, NotResolved, ParameterError, naming
-from .flows.base import check_flow, span_of
+from .flows.base import check_flow, numeric, span_of
 from .output import Row
 from .record import Record
 from .ridges import Landscape
@@ -219,7 +219,7 @@ def _settings(land):
 
 def check_parameter_name(flow: "Flow", name: str) -> str:
     """Return `name` if it is a numeric parameter of the flow, else raise a ParameterError."""
-    known = [item.name for item in fields(flow) if "options" not in item.metadata]
+    known = [item.name for item in fields(flow) if numeric(item)]
     if not (isinstance(name, str) and name in known):
         raise ParameterError(f"{flow.name} has no numeric parameter {shown(name)} to vary; it has {', '.join(known)}")
     return name

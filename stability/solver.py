@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from .checks import check_integer, check_tolerance
+from .cutoff import neglected
 from .mode import Mode
 from .pencil import Pencil
 from .refine import refine, refine_many
@@ -168,6 +169,8 @@ class Solver:
         width = self.width(k)
         sigma = width * eigen.rate
         rounding = width * _ROUNDING * eigen.rounding + width * eigen.spread + _EPS * abs(sigma)
+        if self.bars and self.flow.unbounded:
+            rounding += neglected(self, k, degree, eigen)
         truncation = width * eigen.truncation
         error = truncation + rounding
         status = RESOLVED

@@ -123,7 +123,7 @@ def spectrum(flow: "Flow", k: float, modes: int = 10, *, tolerance: float = TOLE
         for mode in found.modes[:modes]:
             require(mode)
         if found.sure < modes:
-            raise NotResolved(f"{flow}, k={k:g}: {found.status[modes - 1 if len(found.modes) >= modes else -1]}")
+            raise NotResolved(f"{flow}, k={k:g}: {found.doubt}")
     settings = {"tolerance": tolerance, "max_degree": max_degree}
     return Spectrum(flow, k, found.modes[:modes], settings, found.status[:modes],
                     found.doubt if found.sure < modes else None)

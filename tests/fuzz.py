@@ -36,6 +36,7 @@ import references
 from stability import NotResolved, ParameterError, StabilityError, dispersion, k_max, spectrum
 from stability.cli import main as command
 from stability.flows import FLOWS
+from stability.flows.base import numeric
 from stability.neutral import critical
 
 BUDGET = 20.0  # seconds of CPU that a point may take
@@ -174,7 +175,7 @@ class Draw:
         return self._options()
 
     def _critical(self, manner):
-        names = [item.name for item in fields(FLOWS[self.flow]) if "options" not in item.metadata]
+        names = [item.name for item in fields(FLOWS[self.flow]) if numeric(item)]
         return {"vary": self._one_of(names), "long_wave": self._chance(0.2), **self._options()}
 
     def _options(self):
@@ -316,7 +317,7 @@ def _arguments(draw, rng):
              if draw._chance(0.7)]
     k = _text(point.arguments.get("k", draw._k("usual")))
     k = draw._one_of([k, k, f"{k}:{draw._k('usual')}:3", f"{draw._k('mixed')},{k}"])
-    names = [item.name for item in fields(FLOWS[point.flow]) if "options" not in item.metadata]
+    names = [item.name for item in fields(FLOWS[point.flow]) if numeric(item)]
     over = f"--over={draw._one_of(names)}={draw._k('usual')},{draw._k('mixed')}"
     vary = f"--vary={draw._one_of(names)}"
     asked = draw._one_of([

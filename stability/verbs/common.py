@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ..errors import ParameterError
 from ..flows import FLOWS
-from ..flows.base import allowed
+from ..flows.base import allowed, numeric
 from ..output import check_writable, render, terminal_width, whole_file, write
 from ..solver import DEGREES, TOLERANCE, check_accuracy
 from ..specs import parse_spec
@@ -91,8 +91,12 @@ def _add_parameters(verb):
     for name, item in {item.name: item for flow in FLOWS.values() for item in fields(flow)}.items():
         for spelling in dict.fromkeys((flag(item), f"--{name}")):
             group.add_argument(spelling, dest=f"parameter {name}", help=argparse.SUPPRESS,
-                               metavar="NAME" if "options" in item.metadata else _NUMBER)
+                               metavar=_metavar(item))
     return group
+
+
+def _metavar(item):
+    return _NUMBER if numeric(item) else "FILE" if "table" in item.metadata else "NAME"
 
 
 def flag(item):
@@ -147,7 +151,7 @@ def swept_values(text, flow):
     """The parameter and its values of NAME=SPEC."""
     name, _, spec = text.partition("=")
     name = name.replace("-", "_")
-    known = [item.name for item in fields(flow) if "options" not in item.metadata]
+    known = [item.name for item in fields(flow) if numeric(item)]
     if name not in known:
         raise ParameterError(f"--over: {flow.name} has no parameter {name!r}{_nearest(name, known)}; "
                              f"it has {', '.join(known)}")
