@@ -62,21 +62,22 @@ class _Class:
     def __init__(self, solver, k):
         self.solver, self.k = solver, k
         self.rates, self.before, self.degree = np.empty(0, complex), np.empty(0, complex), 0
-        self.unbound = np.empty(0, complex)
+        self.unbound, self.seen, self.looks = np.empty(0, complex), np.empty(0, complex), 0
         self.symbols = solver.symbols(k)
 
     def look(self, degree):
         rates = finite_rates(self.solver, degree, self.symbols)
         bound = self.solver.flow.bound(self.k, self.solver.width(self.k) * rates)
-        self.degree, self.before, self.rates, self.unbound = degree, self.rates, rates[bound], rates[~bound]
-        if self.solver.flow.unbounded and len(self.before):
-            stays, stayed = _kept(self.rates, self.before), _kept(self.before, self.rates)
-            self.unbound = np.concatenate((self.unbound, self.rates[~stays]))
-            self.rates, self.before = self.rates[stays], self.before[stayed]
+        before, self.seen, self.looks = self.seen, rates[bound], self.looks + 1
+        self.degree, self.before, self.rates, self.unbound = degree, before, self.seen, rates[~bound]
+        if self.solver.flow.unbounded and self.looks > 1:
+            stays = _kept(self.seen, before)
+            self.rates, self.before = self.seen[stays], before[_kept(before, self.seen)]
+            self.unbound = np.concatenate((self.unbound, self.seen[~stays]))
 
     def settled(self, line):
         """Whether the rates above the line are, one to one, those of the degree before."""
-        if not len(self.before):
+        if self.looks < 2:
             return False
         now, before = (rates[rates.real > line] for rates in (self.rates, self.before))
         return _paired(now, self.before) and _paired(before, self.rates)

@@ -28,6 +28,7 @@ STYLE: dict[Any, Any] = {
     "savefig.dpi": 200,
     "svg.hashsalt": "stability",
 }
+_FAINT = 1e-3  # of the largest sensitivity to the base flow: less is not drawn
 BLUE, RED, GREY = "#0b4f8a", "#c0392b", "#7f7f7f"
 
 DISPERSION = {"growth_rate": r"growth rate $\sigma_r$", "phase_speed": r"phase speed $c_r$"}  # axis labels
@@ -188,6 +189,20 @@ def mode(one: Mode, axis: "Axes") -> "Axes":
         for name, values, color in (("$|u|$", part.u, BLUE), ("$|w|$", part.w, RED)):
             axis.plot(np.abs(values), part.z, color=color, label=None if index else name)
     axis.set(xlabel=f"velocity at $k$ = {one.k:g}", ylabel="height $z$", xlim=(0, None))
+    axis.legend()
+    return axis
+
+
+def base_flow_sensitivity(one: Mode, axis: "Axes") -> "Axes":
+    """Real and imaginary part of d sigma / d U(z) against z, where they matter."""
+    for index, part in enumerate(Eigenfunction(one).profiles()):
+        S = one.base_flow_sensitivity(part.z)
+        matters = np.abs(S) > _FAINT * np.abs(S).max()
+        z, S = part.z[matters], S[matters]
+        for name, values, color in (("growth rate", S.real, BLUE), ("frequency", S.imag, RED)):
+            axis.plot(values, z, color=color, label=None if index else name)
+    axis.axvline(0, color=GREY, linewidth=0.6)
+    axis.set(xlabel=rf"$\delta\sigma/\delta U(z)$ at $k$ = {one.k:g}", ylabel="height $z$")
     axis.legend()
     return axis
 

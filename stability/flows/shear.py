@@ -73,6 +73,14 @@ class Shear(Flow):
     def data(self):  # type: ignore[override]
         return _fluid(self._key).curve.data
 
+    @property
+    def cut(self) -> float:  # type: ignore[override]
+        return self._base.cut
+
+    def heights(self, s):
+        """z at the points 0 <= s <= 1 of the layer."""
+        return self._base.way.z(s)
+
     def described(self) -> dict[str, Any]:
         fluid = _fluid(self._key)
         heights = np.linspace(*fluid.part.ends, _SHOWN)
