@@ -18,6 +18,7 @@ from . import chebyshev
 from .branch import surface_branch
 from .errors import ModeLost
 from .listing import near_neutral, same
+from .response import error_of_maximum
 from .status import is_resolved
 from .tracking import Walk
 from .wellposed import ill_posed_somewhere, numbers
@@ -59,6 +60,7 @@ class Maximum:
     error: float
     mode: Any
     status: str
+    data_error: float | None = None  # standard error of k from that of a measured base flow
 
     @property
     def growth_rate(self) -> float:
@@ -267,7 +269,8 @@ def crest(solver, left, right):
     status = now.status
     if is_resolved(status) and not error <= max(solver.tolerance, _K_TOLERANCE) * now.k:
         status = f"error {error:.1e} of k_max exceeds tolerance"
-    return Maximum(now.k, error, now, status)
+    measured = error_of_maximum(solver, now) if now.growth_rate > 0 else None
+    return Maximum(now.k, error, now, status, measured)
 
 
 def middle_of(solver, left, right):

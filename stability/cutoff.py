@@ -1,8 +1,9 @@
 """What it does to a mode that an unbounded fluid is cut.
 
-A condition at a cut lacks what depends on the growth rate in no linear way (`Flow.left_out`). To first order it changes
-the rate by y^H times what is left out: that joins the error bar, twice. Modes of the continuous spectrum of the unbounded
-fluid do not fall off towards the cut: where it lies makes them discrete, and what is left out is as large as they are.
+A condition at a cut lacks what depends on the growth rate in no linear way (`Flow.left_out`). To first order it
+changes the rate by y^H times what is left out: that joins the error bar, twice. Modes of the continuous spectrum of the
+unbounded fluid do not fall off towards the cut: where it lies makes them discrete, and what is left out is as large as
+they are.
 """
 
 from types import SimpleNamespace
@@ -40,4 +41,5 @@ def belongs_to_cut(solver, mode):
     flow = solver.flow
     if not flow.unbounded or mode.growth_rate >= 0:
         return False
-    return not flow.bound(mode.k, mode.sigma) or neglected(solver, mode.k, mode.degree, mode) > _UNBOUND * abs(mode.sigma)
+    lacking = neglected(solver, mode.k, mode.degree, mode)
+    return not flow.bound(mode.k, mode.sigma) or lacking > _UNBOUND * abs(mode.sigma)

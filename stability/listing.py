@@ -55,8 +55,8 @@ class Listing:
 class _Class:
     """One symmetry class at a wavenumber: its `solver`, the dense `rates` of the last degree and those before.
 
-    Rates of a continuous spectrum, which a cut makes discrete, are no modes: they are kept apart as `unbound`, and so is,
-    in an unbounded fluid, what decays and does not settle.
+    Rates of a continuous spectrum, which a cut makes discrete, are no modes: they are kept apart as `unbound`, and so
+    is, in an unbounded fluid, what decays and does not settle.
     """
 
     def __init__(self, solver, k):
@@ -138,7 +138,7 @@ def _listed(solver, k, count):
 
 
 def _rung(solver, first, part):
-    """The rung of degrees to start from: at which the base flow is resolved, where what does not settle is put aside."""
+    """The rung to start from: at which the base flow is resolved where what does not settle is put aside."""
     if not solver.flow.unbounded:
         return first
     enough = [rung for rung, degree in enumerate(solver.degrees) if degree >= part * solver.assembly.system.longest]

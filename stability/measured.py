@@ -5,7 +5,6 @@ import os
 from dataclasses import dataclass
 from difflib import get_close_matches
 from hashlib import sha256
-
 from typing import Any
 
 import numpy as np
@@ -79,7 +78,7 @@ def from_file(name: str, path: Any, names: list[str]) -> Table:
         raise ParameterError(f"{where} cannot be read: {reason.strerror}{hint}; known profiles: "
                              f"{', '.join(names)}") from None
     if len(content) > _LARGEST:
-        raise ParameterError(f"{where}: has more than {_LARGEST // 10**6} million bytes: this is no table of a velocity")
+        raise ParameterError(f"{where}: has over {_LARGEST // 10**6} million bytes: it is no table of a velocity")
     try:
         lines = content.decode("utf-8-sig").splitlines()
     except UnicodeDecodeError:
@@ -134,11 +133,13 @@ def _table(where, name, columns, digest, places):
     if len(wrong):
         a, b = z[wrong[0]: wrong[0] + 2]
         kind = "is repeated" if a == b else f"follows {a:.6g}"
-        raise ParameterError(f"{where}{places[wrong[0] + 1]}: z must rise (or fall) from row to row (z = {b:.6g} {kind})")
+        raise ParameterError(f"{where}{places[wrong[0] + 1]}: z must rise (or fall) from row to row "
+                             f"(z = {b:.6g} {kind})")
     if errors:
         wrong = np.flatnonzero(errors[0] < 0)
         if len(wrong):
-            raise ParameterError(f"{where}{places[wrong[0]]}: U_error must not be negative (got {errors[0][wrong[0]]:g})")
+            raise ParameterError(f"{where}{places[wrong[0]]}: U_error must not be negative "
+                                 f"(got {errors[0][wrong[0]]:g})")
         if not errors[0].all():
             if errors[0].any():
                 raise ParameterError(f"{where}{places[np.flatnonzero(errors[0] == 0)[0]]}: U_error is 0 here and not "

@@ -11,7 +11,7 @@ from .crests import Maximum, crest, default_mode, look, may_grow, search_of, sur
 from .errors import ModeLost, NotResolved, naming
 from .flows.base import check_flow
 from .listing import listed
-from .output import Row
+from .output import Row, measured
 from .record import Record
 from .solver import DEGREES, TOLERANCE, Assembly, Solver, check_accuracy
 from .status import STABLE, is_outgrown, is_resolved, outgrown
@@ -63,6 +63,16 @@ class Optimum(Record):
     def phase_speed(self) -> float:
         return self.best.mode.phase_speed
 
+    @property
+    def data_error(self) -> float | None:
+        """Standard error of k_max from that of a measured base flow."""
+        return self.best.data_error
+
+    @property
+    def growth_data_error(self) -> float | None:
+        """That of the growth rate at k_max."""
+        return self.best.mode.data_error
+
     def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Mark the maxima at (k, growth rate) in the matplotlib Axes `ax`, or in a new one; return it."""
         from . import plots
@@ -71,7 +81,8 @@ class Optimum(Record):
 
     def rows(self) -> list[Row]:
         numbers = {name: getattr(self, name) if self.maxima else None
-                   for name in ("k_max", "growth_rate", "phase_speed", "error")}
+                   for name in ("k_max", "growth_rate", "phase_speed", "error",
+                                *measured(self.flow, "growth_data_error"))}
         return [{**numbers, "maxima": [[one.k, one.growth_rate] for one in self.maxima], "status": self.status}]
 
     def columns(self) -> dict[str, np.ndarray]:

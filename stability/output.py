@@ -9,7 +9,6 @@ import sys
 import tempfile
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import fields
 from math import isinf
 from pathlib import Path
 from stat import S_ISDIR
@@ -35,6 +34,11 @@ def header_of(flow: Any, method: str, about: dict[str, Any], notes: Sequence[str
     parameters = {name: value for name, value in flow.described().items() if name not in swept}
     header = {"flow": flow.name, "parameters": parameters, "method": method, "version": __version__, **about}
     return {**header, "notes": list(notes)} if notes else header
+
+
+def measured(flow: Any, *names: str) -> tuple[str, ...]:
+    """Names of the columns that a flow with measured data has beside its error bars: `data_error`, and others."""
+    return () if flow.data is None else ("data_error", *names)
 
 
 def render(form: str, header: dict[str, Any], rows: list[Row], width: int | None = None) -> str:

@@ -12,7 +12,7 @@ from .errors import NotResolved
 from .flows.base import check_flow
 from .listing import listed
 from .mode import Mode, require
-from .output import Row
+from .output import Row, measured
 from .record import Record
 from .solver import DEGREES, TOLERANCE, Solver, check_accuracy
 from .status import INTERRUPTED
@@ -66,7 +66,7 @@ class Spectrum(Eigenvalues, Record):
         return {"k": self.k}
 
     def _summary(self) -> list[Row]:
-        names = ("k", "growth_rate", "phase_speed", "error", "degree")
+        names = ("k", "growth_rate", "phase_speed", "error", *measured(self.flow), "degree")
         return [{**{name: getattr(mode, name) for name in names}, "status": status}
                 for mode, status in zip(self.modes, self.status, strict=True)]
 

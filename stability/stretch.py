@@ -1,11 +1,11 @@
 """Where the points of a layer lie: evenly between two edges, or ever farther apart towards infinity.
 
 An unbounded fluid is cut far above and below its sheared part. With z = centre + A sinh(B x) the points lie as in a
-bounded layer where the fluid is sheared, A being about half its thickness, and farther apart beyond, where perturbations
-fall like exponentials. A cut a thousand times as far away then takes but twice as many points.
+bounded layer where the fluid is sheared, A being about half its thickness, and farther apart beyond, where
+perturbations fall like exponentials. A cut a thousand times as far away then takes but twice as many points.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import asinh, isfinite
 
@@ -14,7 +14,7 @@ import numpy as np
 from .errors import ParameterError
 from .smooth import Rough, fit
 
-_CANDIDATES = 0.3, 0.5, 0.8, 1.3  # A over half the thickness of the sheared part
+_CANDIDATES = 0.12, 0.2, 0.3, 0.5, 0.8, 1.3  # A over half the thickness of the sheared part
 _EDGE = 0.01  # of the change of U at which its sheared part ends
 _ROUNDING = 4 * np.finfo(float).eps  # of the change of U, within which it has reached its limit
 _DOUBLINGS = 40  # of the height up to which a limit is sought
@@ -86,7 +86,7 @@ def _finite(values):
     return int(wrong[0]) if len(wrong) else len(values)
 
 
-def sheared(U: Callable[..., np.ndarray], low: float, high: float, limits: tuple[float | None, float | None]) -> Sheared:
+def sheared(U: Callable[..., np.ndarray], low: float, high: float, limits: Sequence[float | None]) -> Sheared:
     """Return where a fluid between two edges (or -inf, inf) is sheared, U having the `limits` at those at infinity."""
     z = _heights(low, high)
     values = U(z)
@@ -127,29 +127,31 @@ def stretched(U: Callable[..., np.ndarray], part: Sheared, low: float, high: flo
     if isfinite(low) and isfinite(high):
         return Stretch(low, high)
     both = not isfinite(low) and not isfinite(high)
-    centre = (part.core[0] + part.core[1]) / 2 if both else low if isfinite(low) else high
-    half = max(abs(edge - centre) for edge in part.core) or 1.0
-    end = max(abs(edge - centre) for edge in part.ends)
+    half = (part.core[1] - part.core[0]) / (2 if both else 1) or 1.0
     reach = half * max(LEAST, REACH / (Re * part.change * half + _VISCOUS) ** 0.5)
-    A = _best_scale(U, centre, half, end + LEAST * half, both, low)
-    return _sinh(centre, A, end + reach, both, low)
+    centre, A = _best(U, part, low, high, half)
+    return _sinh(centre, A, *_cut(part, low, high, reach))
 
 
-def _sinh(centre, A, far, both, low):
-    B = asinh(far / A)
-    if both:
-        return Stretch(centre - far, centre + far, centre, A, -B, 2 * B)
-    return Stretch(low, low + far, centre, A, 0.0, B) if isfinite(low) else \
-        Stretch(centre - far, centre, centre, A, -B, B)
+def _cut(part, low, high, reach):
+    """Both edges of the layer."""
+    return low if isfinite(low) else part.ends[0] - reach, high if isfinite(high) else part.ends[1] + reach
 
 
-def _best_scale(U, centre, half, far, both, low):
-    """The A with which the series of U is shortest."""
+def _sinh(centre, A, low, high):
+    first = asinh((low - centre) / A)
+    return Stretch(low, high, centre, A, first, asinh((high - centre) / A) - first)
+
+
+def _best(U, part, low, high, half):
+    """The centre and the A with which the series of U is shortest."""
+    centres = dict.fromkeys(edge for edge in (low, high) if isfinite(edge)) | {sum(part.core) / 2: None}
     lengths = {}
-    for share in _CANDIDATES:
-        way = _sinh(centre, share * half, far, both, low)
-        try:
-            lengths[share] = fit(lambda s, way=way: U(way.z(s))[None]).length
-        except Rough:
-            continue
-    return min(lengths, key=lengths.__getitem__, default=_CANDIDATES[1]) * half
+    for centre in centres:
+        for share in _CANDIDATES:
+            way = _sinh(centre, share * half, *_cut(part, low, high, LEAST * half))
+            try:
+                lengths[centre, share * half] = fit(lambda s, way=way: U(way.z(s))[None]).length
+            except Rough:
+                continue
+    return min(lengths, key=lengths.__getitem__, default=(sum(part.core) / 2, _CANDIDATES[1] * half))

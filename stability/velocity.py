@@ -160,5 +160,6 @@ def _moved(f, step):
 
 
 _NAMED = {"poiseuille": _poiseuille, "bickley": _bickley, "tanh": _tanh, "blasius": _blasius}
-NAMES = {one.name: one for one in (Named("poiseuille", -1.0, 1.0, (None, None)), Named("bickley", -inf, inf, (0.0, 0.0)),
-                                   Named("tanh", -inf, inf, (-1.0, 1.0)), Named("blasius", 0.0, inf, (None, 1.0)))}
+NAMES = {one.name: one for one in (
+    Named("poiseuille", -1.0, 1.0, (None, None)), Named("bickley", -inf, inf, (0.0, 0.0)),
+    Named("tanh", -inf, inf, (-1.0, 1.0)), Named("blasius", 0.0, inf, (None, 1.0)))}

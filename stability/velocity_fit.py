@@ -1,7 +1,7 @@
 """A smooth velocity through a table, linear in its values, so that their errors pass through it.
 
 U(z) is a series of Chebyshev polynomials of z between edges, and of tanh((z - centre) / L) where the fluid is
-unbounded: that is constant far away. Coefficients are those of weighted least squares,
+unbounded: those are constant far away. Coefficients are those of weighted least squares,
 
     c = P U_i,    P = (A^T W A)^-1 A^T W,    W = diag(1 / error_i^2),    covariance P diag(error_i^2) P^T.
 
@@ -19,27 +19,45 @@ from numpy.polynomial import chebyshev as C
 
 from .errors import ParameterError
 
-_WIDTHS = 2.5, 3.3, 4.5, 6.0, 8.0  # extent of the table over L
+_WIDTHS = 2.5, 3.3, 4.5, 6.0, 8.0  # distance from the centre to the end of the table over L
+_CENTRES = 0.0, 0.25  # of a fluid with one edge, and the middle: way from the edge over the extent of the table
 _MOST = 60  # terms
 _CONDITION = 300.0  # of the least-squares problem: beyond, values between the points are no longer theirs
 _LIMIT = 0.05  # of the change of U, within which the last value of a table must have come to its limit
 _EPS = np.finfo(float).eps
 
 
+@dataclass(frozen=True)
+class Shape:
+    """How x, from -1 to 1, depends on z between `low` and `high`: linear, or linear in tanh((z - centre) / L)."""
+
+    low: float
+    high: float
+    centre: float | None
+    L: float
+
+    def x(self, z):
+        """x and dx/dz at heights z."""
+        z = np.atleast_1d(np.asarray(z, dtype=float))
+        if self.centre is None:
+            middle, half = (self.low + self.high) / 2, (self.high - self.low) / 2
+            return (z - middle) / half, np.full(z.shape, 1 / half)
+        t, low, high = (np.tanh((height - self.centre) / self.L) for height in (z, self.low, self.high))
+        half = (high - low) / 2
+        return (t - (low + high) / 2) / half, (1 - t) * (1 + t) / (self.L * half)
+
+
 @dataclass(frozen=True, eq=False)
 class Smoothed:
-    """U(z) = sum_j c_j T_j(x), x = (z - centre) / L, or 2 tanh((z - centre) / L) + shift over 1 + |shift|.
+    """U(z) = sum_j c_j T_j(x), with x from -1 to 1 between the ends of the fluid.
 
     `coefficients` (terms,) and their `covariance` (terms, terms); `scatter` is the root mean square about the fit, in
-    units of the errors where those are given; `shift` is -1, 0 or 1: unbounded above, on both sides, below.
+    units of the errors where those are given; `shape` says how x depends on z.
     """
 
     low: float
     high: float
-    centre: float
-    L: float
-    mapped: bool
-    shift: int
+    shape: "Shape"
     coefficients: np.ndarray
     covariance: np.ndarray
     scatter: float
@@ -59,11 +77,11 @@ class Smoothed:
 
     def basis(self, z: np.ndarray) -> np.ndarray:
         """What each coefficient adds to U at heights z, (points, terms)."""
-        return C.chebvander(self._x(z)[0], len(self.coefficients) - 1)
+        return C.chebvander(self.shape.x(z)[0], len(self.coefficients) - 1)
 
     def slopes(self, z: np.ndarray) -> np.ndarray:
         """What each coefficient adds to dU/dz, (points, terms)."""
-        x, dx = self._x(z)
+        x, dx = self.shape.x(z)
         terms = len(self.coefficients)
         slopes = np.zeros((len(x), terms))
         if terms > 1:
@@ -75,15 +93,6 @@ class Smoothed:
         basis = self.basis(np.atleast_1d(z))
         return np.sqrt(np.einsum("ij,jk,ik->i", basis, self.covariance, basis))
 
-    def _x(self, z):
-        """x in [-1, 1] and dx/dz."""
-        z = np.atleast_1d(np.asarray(z, dtype=float))
-        if not self.mapped:
-            return (z - self.centre) / self.L, np.full(z.shape, 1 / self.L)
-        t = np.tanh((z - self.centre) / self.L)
-        share = 1 + abs(self.shift)
-        return share * t + self.shift, share * (1 - t) * (1 + t) / self.L
-
 
 @lru_cache(maxsize=64)
 def smoothed(table: Any, below: bool, above: bool, name: str) -> Smoothed:
@@ -93,32 +102,37 @@ def smoothed(table: Any, below: bool, above: bool, name: str) -> Smoothed:
     """
     z, U = np.array(table.z), np.array(table.U)
     weights = None if table.U_error is None else 1 / np.array(table.U_error)
-    best = min((_fit(z, U, weights, shape) for shape in _shapes(z, below, above)), key=lambda found: found[0])
-    _, shape, c, P, scatter, spread = best
-    covariance = (P * spread**2) @ P.T
-    ends = tuple(_limit(table, c, shape, end, name) if open_ else None for end, open_ in ((-1, below), (1, above)))
-    return Smoothed(table.low, table.high, *shape, c, covariance, scatter, len(z), ends)
+    fits = sorted((_fit(z, U, weights, shape) for shape in _shapes(z, below, above)), key=lambda found: found[0])
+    at_rest = [found for found in fits if _rest(table, found[2], below, above) <= 0]
+    if not at_rest:
+        raise _no_limit(table, fits[0][2], below, above, name)
+    _, shape, c, P, scatter, spread = at_rest[0]
+    low, high = C.chebval([-1.0, 1.0], c).tolist()
+    return Smoothed(table.low, table.high, shape, c, (P * spread**2) @ P.T, scatter, len(z),
+                    (low if below else None, high if above else None))
 
 
 def _shapes(z, below, above):
-    """(centre, L, mapped, shift) of the candidates."""
-    extent = z[-1] - z[0]
+    """The candidates: for an unbounded fluid, several centres and lengths L."""
+    low, high = z[0], z[-1]
     if not below and not above:
-        return [((z[0] + z[-1]) / 2, extent / 2, False, 0)]
-    if below and above:
-        return [((z[0] + z[-1]) / 2, extent / 2 / width, True, 0) for width in _WIDTHS]
-    return [(z[0], extent / width, True, -1) if above else (z[-1], extent / width, True, 1) for width in _WIDTHS]
+        return [Shape(low, high, None, 1.0)]
+    centres = [(low + high) / 2]
+    if not (below and above):
+        centres += [low + share * (high - low) if above else high - share * (high - low) for share in _CENTRES]
+    return [Shape(-np.inf if below else low, np.inf if above else high, centre,
+                  min(abs(end - centre) for end, open_ in ((low, below), (high, above)) if open_) / width)
+            for centre in centres for width in _WIDTHS]
 
 
 def _fit(z, U, weights, shape):
     """The best number of terms for a shape: (criterion, shape, coefficients, P, scatter, errors of the points)."""
     n, scale = len(z), np.ptp(U)
     weight = np.ones(n) if weights is None else weights
-    empty = Smoothed(z[0], z[-1], *shape, np.zeros(min(_MOST, n // 2)), np.zeros((0, 0)), 0.0, n, (None, None))
-    rows, right = empty.basis(z) * weight[:, None], U * weight
+    rows, right = C.chebvander(shape.x(z)[0], min(_MOST, n // 2) - 1) * weight[:, None], U * weight
     q, r = np.linalg.qr(rows)  # nested: the first columns are those of every smaller fit
     rounding = 4 * _EPS * scale * float(np.max(weight))
-    best = None
+    best: Any = None
     for terms in range(2, rows.shape[1] + 1):
         if terms > 2 and np.linalg.cond(r[:terms, :terms]) > _CONDITION * np.linalg.cond(r[:2, :2]):
             break
@@ -135,15 +149,17 @@ def _fit(z, U, weights, shape):
     return criterion, shape, P @ U, P, scatter, np.full(n, scatter) if weights is None else 1 / weight
 
 
-def _limit(table, c, shape, end, name):
-    """U far beyond an end of the table, which must have come near it."""
-    values = C.chebval([-1.0, 1.0], c)
-    limit, last = float(values[0 if end < 0 else 1]), table.U[0 if end < 0 else -1]
-    rest = abs(last - limit) / np.ptp(table.U)
-    error = max(table.U_error or (0.0,)) / np.ptp(table.U)
-    if rest > _LIMIT + 4 * error:
-        edge, z = ("top", table.high) if end > 0 else ("bottom", table.low)
-        raise ParameterError(f"{name}: {edge} = decay, but at the end of {table!r}, z = {z:.6g}, U still differs by "
-                             f"{100 * rest:.0f} % of its change from where it seems to go ({limit:.4g}): a longer table "
-                             "is needed, or a wall or a free edge")
-    return limit
+def _rest(table, c, below, above):
+    """By how much more than is allowed U still changes beyond the ends of a table, over its whole change; and where."""
+    limits, change = C.chebval([-1.0, 1.0], c), np.ptp(table.U)
+    way = [abs(table.U[side] - limits[side]) * open_ for side, open_ in ((0, below), (-1, above))]
+    return max(way) / change - _LIMIT - 4 * max(table.U_error or (0.0,)) / change
+
+
+def _no_limit(table, c, below, above, name):
+    sides = [side for side, open_ in ((0, below), (-1, above)) if open_]
+    limits = C.chebval([-1.0, 1.0], c)
+    side = max(sides, key=lambda side: abs(table.U[side] - limits[side]))
+    return ParameterError(f"{name}: {'top' if side else 'bottom'} = decay, but {table!r} ends at z = "
+                          f"{table.z[side]:.6g} with U = {table.U[side]:.4g}, far from where it seems to go "
+                          f"({limits[side]:.4g}): a longer table is needed, or a wall or a free edge")

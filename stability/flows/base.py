@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 from math import inf, isfinite, isinf
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from ..checks import LARGEST, as_number, check_options, in_double_precision, shown
 from ..errors import ParameterError
@@ -53,7 +53,10 @@ class Flow:
     order: ClassVar[int] = 0  # sigma = k^(1 + order) * rate
     surfaces: ClassVar[tuple[str, ...]] = ()
     functions: ClassVar[tuple[str, ...]] = ()
-    bottom = 0.0  # z of the lowest edge; no annotation, so that a flow may have a parameter of this name
+    if TYPE_CHECKING:
+        bottom: ClassVar[float]
+    else:  # not annotated: else it would come first among the parameters of a flow that has one of this name
+        bottom = 0.0  # z of the lowest edge
     wavenumber: ClassVar[float] = 1.0  # at which the mode leads that is followed where there is no surface mode
     decays: ClassVar[bool] = False  # whether it is known that all modes of all such flows decay
     unbounded: ClassVar[bool] = False  # whether the fluid is cut where it should go on to infinity

@@ -42,7 +42,8 @@ class Shear(Flow):
     profile: Any = table("poiseuille", read, kinds="|".join((*NAMES, "FILE")), meaning=(
         "U(z): a known velocity, or a CSV file with columns z, U and perhaps U_error, the standard error of U"))
     Re: float = parameter(100.0, 0, look=(1.0, 1e5), meaning="Reynolds number of the scales of U(z)")
-    bottom: str = choice(*_EDGES, meaning="lower edge: no slip, no stress, or at infinity")  # type: ignore[assignment]
+    bottom: str = choice(  # type: ignore[assignment, misc]
+        *_EDGES, meaning="lower edge: no slip, no stress, or at infinity")
     top: str = choice(*_EDGES, meaning="upper edge: no slip, no stress, or at infinity")
     z_low: float = parameter(-inf, None, unbounded=True, look=(0.1, 10.0), meaning=(
         "height of a lower wall or free edge; -inf: where the profile has its own"))
@@ -83,7 +84,8 @@ class Shear(Flow):
 
     def described(self) -> dict[str, Any]:
         fluid = _fluid(self._key)
-        heights = np.linspace(*fluid.part.ends, _SHOWN)
+        low, high = fluid.part.ends
+        heights = np.linspace(low, high, _SHOWN)
         return {item.name: self.profile.text(heights) if item.name == "profile" else getattr(self, item.name)
                 for item in fields(self)}
 
@@ -170,7 +172,7 @@ def _fluid(key):
     if not low < high:
         raise ParameterError(f"shear: z_low must be below z_high (got {low:g} and {high:g})")
     start = low if isfinite(low) else high if isfinite(high) else 0.0
-    limits = tuple(_limit(curve, side, start) if open_[side] else None for side in (0, 1))
+    limits: Any = tuple(_limit(curve, side, start) if open_[side] else None for side in (0, 1))
     return _Fluid(curve, low, high, limits, sheared(curve.U, low, high, limits))
 
 
