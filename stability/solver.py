@@ -169,14 +169,15 @@ class Solver:
         width = self.width(k)
         sigma = width * eigen.rate
         rounding = width * _ROUNDING * eigen.rounding + width * eigen.spread + _EPS * abs(sigma)
+        lacking = 0.0  # at cuts: no degree mends that
         if self.bars and self.flow.unbounded:
-            rounding += neglected(self, k, degree, eigen)
+            lacking = neglected(self, k, degree, eigen)
         if self.bars and self.flow.cut:
             from .response import spread_of  # needs solvers itself
 
             rounding += spread_of(self, k, degree, eigen, self.flow.cut)
         truncation = width * eigen.truncation
-        error = truncation + rounding
+        error = truncation + rounding + lacking
         status = RESOLVED
         if not error <= self.tolerance * abs(sigma):  # nor where it is not a number
             status = f"error {error:.1e} exceeds tolerance at degree {degree}"
