@@ -28,6 +28,7 @@ _LEAP = 0.05  # largest relative distance of a refined rate from the dense one
 _FAILURES = 3  # degrees at which a settled list may be found incomplete before that is said
 _COSTLY = 400  # unknowns of a dense problem beyond which a part of the depth asked for may do
 _BASE = 0.5, 0.3  # degree over terms of the base flow from which on modes of an unbounded fluid are listed; looked at
+_FRUITLESS = 5  # looks at an unbounded fluid after which it is taken to have no modes
 _SIDE = 6, 2, 2, 2  # points along the line and along the other sides of the contour
 _TURN = 1.0  # largest turn (radians) between neighbouring points of the contour
 _FLAT = 0.1  # total turn (radians) below which a list is complete: rounding would leave no such balance
@@ -62,13 +63,13 @@ class _Class:
     def __init__(self, solver, k):
         self.solver, self.k = solver, k
         self.rates, self.before, self.degree = np.empty(0, complex), np.empty(0, complex), 0
-        self.unbound, self.seen, self.looks = np.empty(0, complex), np.empty(0, complex), 0
+        self.unbound, self.seen, self.earlier, self.looks = (*(np.empty(0, complex) for _ in range(3)), 0)
         self.symbols = solver.symbols(k)
 
     def look(self, degree):
         rates = finite_rates(self.solver, degree, self.symbols)
         bound = self.solver.flow.bound(self.k, self.solver.width(self.k) * rates)
-        before, self.seen, self.looks = self.seen, rates[bound], self.looks + 1
+        before, self.seen, self.looks, self.earlier = self.seen, rates[bound], self.looks + 1, self.rates
         self.degree, self.before, self.rates, self.unbound = degree, before, self.seen, rates[~bound]
         if self.solver.flow.unbounded and self.looks > 1:
             stays = _kept(self.seen, before)
@@ -81,6 +82,14 @@ class _Class:
             return False
         now, before = (rates[rates.real > line] for rates in (self.rates, self.before))
         return _paired(now, self.before) and _paired(before, self.rates)
+
+    def steady(self, line):
+        """Whether, in an unbounded fluid, what has settled was there at the degree before as well."""
+        if not self.solver.flow.unbounded:
+            return True
+        now = self.rates[self.rates.real > line]
+        there = len(now) == np.sum(self.earlier.real > line) and _paired(now, self.earlier)
+        return self.looks > 2 and there
 
     def refined(self, line):
         """The modes above the line; None in place of those that the iteration leaves; those of a cut are put aside."""
@@ -128,8 +137,12 @@ def _listed(solver, k, count):
     for degree in dense_degrees(solver, _rung(solver, FIRST, _BASE[0]), 2):
         for one in classes:
             one.look(degree)
+        if not len(_all_rates(classes)):  # no mode of an unbounded fluid is known yet
+            if classes[0].looks > _FRUITLESS:
+                break
+            continue
         line = _line(_all_rates(classes), count)
-        if all(one.settled(line) for one in classes):
+        if all(one.settled(line) and one.steady(line) for one in classes):
             found = _found(classes, line, degree)
             failures += 1
             if found.doubt is None or failures == _FAILURES:
@@ -160,6 +173,8 @@ def _found(classes, line, degree):
 def _as_far_as_settled(classes, count, degree):
     """The listing where the modes asked for do not settle: a sure part, if there is one, and the others behind it."""
     rates = _all_rates(classes)
+    if not len(rates):
+        return Listing((), 0, None)
     doubt = f"the least stable modes do not settle up to degree {degree}"
     known = [_distinct(one.tried(_line(rates, 2 * count + _MORE))) for one in classes]
     growth = np.sort(rates.real)[::-1]
@@ -235,8 +250,8 @@ def _line(rates, count):
 
 def _paired(rates, others):
     """Whether each rate has an other one of its own within the drift allowed."""
-    if not len(rates):
-        return True
+    if not len(rates) or not len(others):
+        return not len(rates)
     distance = np.abs(rates[:, None] - others)
     nearest = distance.argmin(axis=1)
     return len(set(nearest.tolist())) == len(rates) and bool(np.all(distance.min(axis=1) < _DRIFT * np.abs(rates)))

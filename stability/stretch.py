@@ -14,7 +14,7 @@ import numpy as np
 from .errors import ParameterError
 from .smooth import Rough, fit
 
-_CANDIDATES = 0.12, 0.2, 0.3, 0.5, 0.8, 1.3  # A over half the thickness of the sheared part
+_CANDIDATES = 0.7, 1.0, 1.4, 2.0, 2.8, 4.0  # A over the spread of the sheared part
 _EDGE = 0.01  # of the change of U at which its sheared part ends
 _ROUNDING = 4 * np.finfo(float).eps  # of the change of U, within which it has reached its limit
 _DOUBLINGS = 40  # of the height up to which a limit is sought
@@ -23,6 +23,7 @@ _GRID = 4000  # heights among which the sheared part is sought
 REACH = 800.0  # of the cut beyond the sheared part, in half thicknesses, over the square root of their Reynolds number
 _VISCOUS = 0.64  # added to that Reynolds number: the cut is at most a thousand half thicknesses away
 LEAST = 25.0  # and at least so many
+_USUAL = 200.0  # so many where the shape of the map is chosen, whatever the Reynolds number
 
 
 @dataclass(frozen=True)
@@ -53,12 +54,15 @@ class Stretch:
 class Sheared:
     """Where a fluid of velocity U(z) is sheared: `core` (low, high), to 1 % of its change, and `ends`, to rounding.
 
-    An end that is an edge of the fluid stays there.
+    An end that is an edge of the fluid stays there. `middle` is the mean height and `spread` the standard deviation of
+    heights weighted by |U'|.
     """
 
     core: tuple[float, float]
     ends: tuple[float, float]
     change: float
+    middle: float
+    spread: float
 
 
 def limit(U: Callable[..., np.ndarray], start: float, side: int, name: str) -> float:
@@ -97,7 +101,11 @@ def sheared(U: Callable[..., np.ndarray], low: float, high: float, limits: Seque
             away = np.abs(values - end)
             core[side] = _last(z, away > _EDGE * change, side)
             ends[side] = _last(z, away > _ROUNDING * change, side)
-    return Sheared((core[0], core[1]), (ends[0], ends[1]), change)
+    heights, weights = (z[1:] + z[:-1]) / 2, np.abs(np.diff(values))
+    weights = weights / (weights.sum() or 1.0)
+    middle = float(weights @ heights)
+    spread = float(np.sqrt(weights @ (heights - middle) ** 2))
+    return Sheared((core[0], core[1]), (ends[0], ends[1]), change, middle, spread or 1.0)
 
 
 def _heights(low, high):
@@ -129,7 +137,7 @@ def stretched(U: Callable[..., np.ndarray], part: Sheared, low: float, high: flo
     both = not isfinite(low) and not isfinite(high)
     half = (part.core[1] - part.core[0]) / (2 if both else 1) or 1.0
     reach = half * max(LEAST, REACH / (Re * part.change * half + _VISCOUS) ** 0.5)
-    centre, A = _best(U, part, low, high, half)
+    centre, A = _best(U, part, low, high, _USUAL * half)
     return _sinh(centre, A, *_cut(part, low, high, reach))
 
 
@@ -143,15 +151,15 @@ def _sinh(centre, A, low, high):
     return Stretch(low, high, centre, A, first, asinh((high - centre) / A) - first)
 
 
-def _best(U, part, low, high, half):
+def _best(U, part, low, high, reach):
     """The centre and the A with which the series of U is shortest."""
-    centres = dict.fromkeys(edge for edge in (low, high) if isfinite(edge)) | {sum(part.core) / 2: None}
+    edge = low if isfinite(low) else high if isfinite(high) else part.middle
     lengths = {}
-    for centre in centres:
+    for centre in dict.fromkeys((part.middle, edge)):
         for share in _CANDIDATES:
-            way = _sinh(centre, share * half, *_cut(part, low, high, LEAST * half))
+            way = _sinh(centre, share * part.spread, *_cut(part, low, high, reach))
             try:
-                lengths[centre, share * half] = fit(lambda s, way=way: U(way.z(s))[None]).length
+                lengths[centre, share * part.spread] = fit(lambda s, way=way: U(way.z(s))[None]).length
             except Rough:
                 continue
-    return min(lengths, key=lengths.__getitem__, default=(sum(part.core) / 2, _CANDIDATES[1] * half))
+    return min(lengths, key=lengths.__getitem__, default=(part.middle, part.spread))
