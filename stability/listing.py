@@ -70,6 +70,8 @@ class _Class:
         rates = finite_rates(self.solver, degree, self.symbols)
         bound = self.solver.flow.bound(self.k, self.solver.width(self.k) * rates)
         before, self.seen, self.looks, self.earlier = self.seen, rates[bound], self.looks + 1, self.rates
+        if self.looks < 3 or not self.solver.flow.unbounded:
+            self.enough = degree
         self.degree, self.before, self.rates, self.unbound = degree, before, self.seen, rates[~bound]
         if self.solver.flow.unbounded and self.looks > 1:
             stays = _kept(self.seen, before)
@@ -83,13 +85,12 @@ class _Class:
         now, before = (rates[rates.real > line] for rates in (self.rates, self.before))
         return _paired(now, self.before) and _paired(before, self.rates)
 
-    def steady(self, line):
-        """Whether, in an unbounded fluid, what has settled was there at the degree before as well."""
+    def steady(self, count):
+        """Whether, in an unbounded fluid, the leading modes that have settled were the leading ones before as well."""
         if not self.solver.flow.unbounded:
             return True
-        now = self.rates[self.rates.real > line]
-        there = len(now) == np.sum(self.earlier.real > line) and _paired(now, self.earlier)
-        return self.looks > 2 and there
+        first, before = (rates[np.argsort(-rates.real)][:count] for rates in (self.rates, self.earlier))
+        return self.looks > 2 and len(first) == len(before) and _paired(first, before)
 
     def refined(self, line):
         """The modes above the line; None in place of those that the iteration leaves; those of a cut are put aside."""
@@ -104,7 +105,7 @@ class _Class:
 
     def _refined(self, rate):
         try:
-            mode = self.solver.solve(self.k, rate, None, self.degree)
+            mode = self.solver.solve(self.k, rate, None, self.enough)
         except ModeLost:
             return None
         return mode if abs(mode.rate - rate) < _LEAP * abs(rate) else None
@@ -142,7 +143,7 @@ def _listed(solver, k, count):
                 break
             continue
         line = _line(_all_rates(classes), count)
-        if all(one.settled(line) and one.steady(line) for one in classes):
+        if all(one.settled(line) and one.steady(count) for one in classes):
             found = _found(classes, line, degree)
             failures += 1
             if found.doubt is None or failures == _FAILURES:
@@ -176,7 +177,8 @@ def _as_far_as_settled(classes, count, degree):
     if not len(rates):
         return Listing((), 0, None)
     doubt = f"the least stable modes do not settle up to degree {degree}"
-    known = [_distinct(one.tried(_line(rates, 2 * count + _MORE))) for one in classes]
+    known = [[] if one.solver.flow.unbounded else _distinct(one.tried(_line(rates, 2 * count + _MORE)))
+             for one in classes]
     growth = np.sort(rates.real)[::-1]
     for behind in range(min(count + _SPARE, len(growth) - 1), 0, -1):
         line = (growth[behind - 1] + growth[behind]) / 2
