@@ -20,8 +20,8 @@ _ROUNDING = 4 * np.finfo(float).eps  # of the change of U, within which it has r
 _DOUBLINGS = 40  # of the height up to which a limit is sought
 _AGREEING = 3  # values at the largest heights that must be one
 _GRID = 4000  # heights among which the sheared part is sought
-REACH = 800.0  # of the cut beyond the sheared part, in half thicknesses, over the square root of their Reynolds number
-_VISCOUS = 0.64  # added to that Reynolds number: the cut is at most a thousand half thicknesses away
+REACH = 250.0  # of the cut beyond the sheared part, in half thicknesses, over the square root of their Reynolds number
+_VISCOUS = 0.0625  # added to that Reynolds number: the cut is at most a thousand half thicknesses away
 LEAST = 25.0  # and at least so many
 _USUAL = 200.0  # so many where the shape of the map is chosen, whatever the Reynolds number
 
@@ -102,9 +102,11 @@ def sheared(U: Callable[..., np.ndarray], low: float, high: float, limits: Seque
             core[side] = _last(z, away > _EDGE * change, side)
             ends[side] = _last(z, away > _ROUNDING * change, side)
     heights, weights = (z[1:] + z[:-1]) / 2, np.abs(np.diff(values))
+    weights = np.where((heights > ends[0]) & (heights < ends[1]), weights, 0.0)  # no rounding from far away
     weights = weights / (weights.sum() or 1.0)
     middle = float(weights @ heights)
     spread = float(np.sqrt(weights @ (heights - middle) ** 2))
+    middle = round(middle / (spread or 1.0), 6) * (spread or 1.0)  # parity stays exact
     return Sheared((core[0], core[1]), (ends[0], ends[1]), change, middle, spread or 1.0)
 
 
@@ -130,7 +132,7 @@ def stretched(U: Callable[..., np.ndarray], part: Sheared, low: float, high: flo
     """Return the map of a fluid between two edges, cut where one is at infinity.
 
     The cut lies where U has reached its limit and so far beyond that vorticity falls by 1e-16 on the way and back, with
-    vorticity ~ exp(-z sqrt(i k Re (U - c))) for k Re (U - c) down to 1e-3 per half thickness.
+    vorticity ~ exp(-z sqrt(i k Re (U - c))) for k Re (U - c) down to 1e-2 per half thickness.
     """
     if isfinite(low) and isfinite(high):
         return Stretch(low, high)

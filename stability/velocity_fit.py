@@ -24,6 +24,7 @@ _CENTRES = 0.0, 0.25  # of a fluid with one edge, and the middle: way from the e
 _MOST = 60  # terms
 _CONDITION = 300.0  # of the least-squares problem: beyond, values between the points are no longer theirs
 _LIMIT = 0.05  # of the change of U, within which the last value of a table must have come to its limit
+_SLOPE = 0.6  # of the change of U over the extent of a table: the largest slope at an end where it comes to rest
 _EPS = np.finfo(float).eps
 
 
@@ -103,7 +104,7 @@ def smoothed(table: Any, below: bool, above: bool, name: str) -> Smoothed:
     z, U = np.array(table.z), np.array(table.U)
     weights = None if table.U_error is None else 1 / np.array(table.U_error)
     fits = sorted((_fit(z, U, weights, shape) for shape in _shapes(z, below, above)), key=lambda found: found[0])
-    at_rest = [found for found in fits if _rest(table, found[2], below, above) <= 0]
+    at_rest = [found for found in fits if _rest(table, *found[1:3], below, above) <= 0]
     if not at_rest:
         raise _no_limit(table, fits[0][2], below, above, name)
     _, shape, c, P, scatter, spread = at_rest[0]
@@ -149,11 +150,15 @@ def _fit(z, U, weights, shape):
     return criterion, shape, P @ U, P, scatter, np.full(n, scatter) if weights is None else 1 / weight
 
 
-def _rest(table, c, below, above):
-    """By how much more than is allowed U still changes beyond the ends of a table, over its whole change; and where."""
+def _rest(table, shape, c, below, above):
+    """By how much more than is allowed U still changes beyond the open ends of a table, over its whole change."""
     limits, change = C.chebval([-1.0, 1.0], c), np.ptp(table.U)
-    way = [abs(table.U[side] - limits[side]) * open_ for side, open_ in ((0, below), (-1, above))]
-    return max(way) / change - _LIMIT - 4 * max(table.U_error or (0.0,)) / change
+    ends = np.array(table.z)[[0, -1]]
+    x, dx = shape.x(ends)
+    slopes = np.abs(C.chebval(x, C.chebder(c)) * dx) * (ends[1] - ends[0])
+    way = [open_ * max(abs(table.U[side] - limits[side]) / _LIMIT, slopes[side] / _SLOPE)
+           for side, open_ in ((0, below), (-1, above))]
+    return max(way) / change - 1 - 4 * max(table.U_error or (0.0,)) / (_LIMIT * change)
 
 
 def _no_limit(table, c, below, above, name):
