@@ -24,7 +24,9 @@ _CENTRES = 0.0, 0.25  # of a fluid with one edge, and the middle: way from the e
 _MOST = 60  # terms
 _CONDITION = 300.0  # of the least-squares problem: beyond, values between the points are no longer theirs
 _LIMIT = 0.05  # of the change of U, within which the last value of a table must have come to its limit
-_SLOPE = 0.6  # of the change of U over the extent of a table: the largest slope at an end where it comes to rest
+_SLOPE = 0.6  # of the change of U over the extent of a table: the largest slope at an end where it comes to rest,
+_PART = 0.15  # that is in this part of the table
+_ALIKE, _CLOSE = 10.0, 1e-6  # scatter of a fit over the least of all, and beyond it, up to which it may serve
 _EPS = np.finfo(float).eps
 
 
@@ -104,8 +106,10 @@ def smoothed(table: Any, below: bool, above: bool, name: str) -> Smoothed:
     z, U = np.array(table.z), np.array(table.U)
     weights = None if table.U_error is None else 1 / np.array(table.U_error)
     fits = sorted((_fit(z, U, weights, shape) for shape in _shapes(z, below, above)), key=lambda found: found[0])
-    at_rest = [found for found in fits if _rest(table, *found[1:3], below, above) <= 0]
-    if not at_rest:
+    closest = _ALIKE * min(found[4] for found in fits) + _CLOSE * (1.0 if weights is not None else np.ptp(U))
+    moving = any(_moves(z, U, side) for side, open_ in ((0, below), (-1, above)) if open_)
+    at_rest = [found for found in fits if found[4] <= closest and _rest(table, found[2], below, above) <= 0]
+    if moving or not at_rest:
         raise _no_limit(table, fits[0][2], below, above, name)
     _, shape, c, P, scatter, spread = at_rest[0]
     low, high = C.chebval([-1.0, 1.0], c).tolist()
@@ -150,15 +154,22 @@ def _fit(z, U, weights, shape):
     return criterion, shape, P @ U, P, scatter, np.full(n, scatter) if weights is None else 1 / weight
 
 
-def _rest(table, shape, c, below, above):
+def _rest(table, c, below, above):
     """By how much more than is allowed U still changes beyond the open ends of a table, over its whole change."""
     limits, change = C.chebval([-1.0, 1.0], c), np.ptp(table.U)
-    ends = np.array(table.z)[[0, -1]]
-    x, dx = shape.x(ends)
-    slopes = np.abs(C.chebval(x, C.chebder(c)) * dx) * (ends[1] - ends[0])
-    way = [open_ * max(abs(table.U[side] - limits[side]) / _LIMIT, slopes[side] / _SLOPE)
-           for side, open_ in ((0, below), (-1, above))]
-    return max(way) / change - 1 - 4 * max(table.U_error or (0.0,)) / (_LIMIT * change)
+    way = [abs(table.U[side] - limits[side]) * open_ for side, open_ in ((0, below), (-1, above))]
+    return max(way) / change - _LIMIT - 4 * max(table.U_error or (0.0,)) / change
+
+
+def _moves(z, U, side):
+    """Whether a line through the last part of a table is steep, beyond its own standard error."""
+    count = max(4, int(_PART * len(z)))
+    here = slice(0, count) if side == 0 else slice(-count, None)
+    x = z[here] - z[here].mean()
+    slope = float(x @ U[here] / (x @ x))
+    rest = U[here] - U[here].mean() - slope * x
+    error = float(np.sqrt(rest @ rest / (count - 2) / (x @ x)))
+    return abs(slope) - 4 * error > _SLOPE * np.ptp(U) / (z[-1] - z[0])
 
 
 def _no_limit(table, c, below, above, name):

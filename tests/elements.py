@@ -1,4 +1,4 @@
-"""Eigenvalues of the Orr-Sommerfeld equation in extended precision, by spectral elements, with exact conditions outside.
+"""Eigenvalues of the Orr-Sommerfeld equation in extended precision, by spectral elements; exact conditions outside.
 
     w'' = f + k^2 w,    f'' = (k^2 + Re (sigma + i k U)) f - i k Re U'' w
 
@@ -19,7 +19,7 @@ FIELDS = 4  # w, w', f, f'
 
 
 class Elements:
-    """Points (elements, order + 1) between two heights, and the differentiation matrix (order + 1, order + 1) of each."""
+    """Points (elements, order + 1) between two heights, and the differentiation matrix of each element."""
 
     def __init__(self, low, high, count, order):
         angle = np.arange(order + 1, dtype=np.longdouble) * (4 * np.arctan(np.longdouble(1)) / order)
@@ -67,7 +67,7 @@ def growth(U, ddU, low, high, Re, k, guess, edges, count=40, order=24):
 
 
 class _Problem:
-    """The equations at the inner points of each element, values that meet between elements, and conditions at the edges.
+    """The equations in each element, values that meet between elements, and conditions at the edges.
 
     Unknowns are (elements, fields, points); rows are the four equations at all points but the first of each element,
     then those that meet or hold at that point (two at each edge of the fluid).
@@ -109,7 +109,7 @@ class _Problem:
         ends = []
         for end, side in ((0, -1), (-1, 1)):
             at = fields[end, :, end]
-            two = [self.conditions(at, side, sigma + sign * step, self.edges[end], self.U[end, end]) for sign in (1, -1)]
+            two = [self.conditions(at, side, sigma + way * step, self.edges[end], self.U[end, end]) for way in (1, -1)]
             ends.append((two[0] - two[1]) / (2 * step))
         return np.concatenate((inner.ravel(), np.zeros((self.shape[0] - 1) * FIELDS), *ends))
 

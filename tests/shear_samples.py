@@ -63,7 +63,7 @@ def reference(flow, k, sigma, count=1.0):
 
 
 def _write():
-    print("# source: recomputed in extended precision by spectral elements (Orr-Sommerfeld equation), tests/elements.py,")
+    print("# source: recomputed in extended precision by spectral elements (Orr-Sommerfeld), tests/elements.py,")
     print("#   with two numbers of elements, which agree to the last column; written by tests/shear_samples.py")
     print("# table: the least stable mode of random velocities; a seed tells velocity, edges, Re and k")
     print("# scaling: that of the velocities; exp(i k x + sigma t)")

@@ -68,7 +68,8 @@ def test_tables_of_a_jet(edges, tmp_path, capsys):
     z = np.linspace(-6, 6, 61)
     path = written(tmp_path / "jet.csv", z, 1 / np.cosh(z) ** 2)
     flags = [word for name, kind in edges.items() for word in (f"--{name}", kind)]
-    status, rows, _, err = run(capsys, "dispersion", "shear", "--profile", path, *flags, "--Re", "100", "--k", "0.1:1.5:50")
+    status, rows, _, err = run(capsys, "dispersion", "shear", "--profile", path, *flags, "--Re", "100", "--k",
+                               "0.1:1.5:50")
     assert (status, err, len(rows)) == (0, "", 50)
     named = flows.Shear("bickley", Re=100.0, **(edges if edges == OPEN else {**OPEN}))
     if edges == OPEN:
