@@ -131,6 +131,8 @@ class Draw:
         rule = item.metadata
         if "options" in rule:
             return self._one_of(rule["options"])
+        if "table" in rule:
+            return self._one_of(rule["kinds"].split("|"))
         if (rule["unbounded"] or rule["closed"]) and self._chance(0.3):
             return math.inf if rule["unbounded"] else 0
         usual, whole = RANGES.get(item.name, ((0.1, 10), (1e-8, 1e8)))
