@@ -149,7 +149,15 @@ class Draw:
         return self._one_of(EDGES)
 
     def _make_consistent(self, parameters):
-        """Put the slope of roll waves between the angles of mu1 and mu2, mostly; next to one of them at times."""
+        """Put the slope of roll waves between the angles of mu1 and mu2, mostly; next to one of them at times.
+
+        Give a velocity the edges that it has, mostly.
+        """
+        if "profile" in parameters and not self._chance(0.15):
+            parameters.update(self._one_of([*[{"profile": "poiseuille", "bottom": "wall", "top": "wall"}] * 6,
+                                            {"profile": "blasius", "bottom": "wall", "top": "decay"},
+                                            {"profile": "tanh", "bottom": "decay", "top": "decay"}]),
+                              z_low=-math.inf, z_high=math.inf)
         if "mu2" not in parameters or self._chance(0.1):
             return
         low, high = sorted((parameters["mu1"], parameters["mu2"]))
