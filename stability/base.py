@@ -87,7 +87,7 @@ def base_flow(flow: Any, points: int = POINTS) -> BaseFlow:
     """
     check_flow(flow)
     points = check_integer(points, "points", 2, MOST)
-    s, bottom = np.linspace(0, 1, points), float(flow.bottom)
+    s, bottom = np.linspace(0, 1, points), float(flow.lowest)
     names, parts, flux = [], [], {}
     for layer in flow.layers(numbers(flow)):
         profiles = _profiles(flow, layer, s, bottom)

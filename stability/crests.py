@@ -19,6 +19,7 @@ from .branch import surface_branch
 from .errors import ModeLost
 from .listing import near_neutral, same
 from .memory import branch_of
+from .response import error_of_maximum
 from .status import is_resolved
 from .tracking import Walk
 from .wellposed import ill_posed_somewhere, numbers
@@ -60,6 +61,7 @@ class Maximum:
     error: float
     mode: Any
     status: str
+    data_error: float | None = None  # standard error of k from that of a measured base flow
 
     @property
     def growth_rate(self) -> float:
@@ -116,6 +118,9 @@ def look(solver, low, high):
 
 
 def _look(solver, low, high):
+    high = min(high, solver.flow.shortest())
+    if not low < high:
+        return Look([], ([], []), None)
     grid = np.geomspace(low, high, 1 + max(1, ceil(log(high / low) / _STEP))).tolist()
     rough, rung, columns, trouble = solver.rough(ROUGH), 0, [], None
     depth = depth_of(solver.flow)
@@ -270,7 +275,8 @@ def crest(solver, left, right):
     status = now.status
     if is_resolved(status) and not error <= max(solver.tolerance, _K_TOLERANCE) * now.k:
         status = f"error {error:.1e} of k_max exceeds tolerance"
-    return Maximum(now.k, error, now, status)
+    measured = error_of_maximum(solver, now) if now.growth_rate > 0 else None
+    return Maximum(now.k, error, now, status, measured)
 
 
 def _bend(one, other):

@@ -65,7 +65,7 @@ class Eigenfunction:
         self.layers = flow.layers(SimpleNamespace(**{name: value[0] for name, value in solver.symbols(mode.k).items()}))
         self._base = [resolved(flow, self.layers, index, _velocities) for index in range(len(self.layers))]
         thickness = [float(layer.height(np.array(1.0))) for layer in self.layers]
-        self.edges = flow.bottom + np.concatenate(([0.0], np.cumsum(thickness)))
+        self.edges = flow.lowest + np.concatenate(([0.0], np.cumsum(thickness)))
         self.high = self.edges[-1]
         self.low = 2 * self.edges[0] - self.high if self.reflection else self.edges[0]
         self._slack = _ROUNDING * (self.high - self.low)
@@ -85,6 +85,17 @@ class Eigenfunction:
 
     def at(self, z: Any) -> Fields:
         """Return the `Fields` at heights z, a number or an array; raises ParameterError outside the layers."""
+        heights, parts, mirrored = self.placed(z)
+        values = np.zeros((5, heights.size), complex)
+        for index, here, s in parts:
+            values[:, here] = self._at(index, s)
+        values[:, mirrored] *= self.reflection * _ODD_WITH_W[:, None]
+        u, w, t, n, p = values.reshape(5, *heights.shape)
+        return Fields(heights, u, w, t, n, p, self.surfaces)
+
+    def placed(self, z: Any) -> tuple[np.ndarray, list[tuple[int, np.ndarray, np.ndarray]], np.ndarray]:
+        """Heights as an array; for each layer its number, which heights lie in it and where, 0 <= s <= 1; and which are
+        mirrored. The last three are flat. Raises ParameterError outside the layers."""
         heights = _heights(z)
         flat = heights.ravel()
         outside = flat[~((flat >= self.low - self._slack) & (flat <= self.high + self._slack))]
@@ -93,14 +104,9 @@ class Eigenfunction:
             raise ParameterError(f"z must lie in the layers of the flow, [{low:g}, {high:g}] (got {outside[0]:g})")
         mirrored = flat < self.edges[0] - self._slack
         inside = np.where(mirrored, 2 * self.edges[0] - flat, flat)
-        values = np.zeros((5, len(flat)), complex)
         layer_of = np.searchsorted(self.edges[1:-1], inside - self._slack)
-        for index in range(len(self.layers)):
-            here = layer_of == index
-            values[:, here] = self._at(index, self._s(index, inside[here]))
-        values[:, mirrored] *= self.reflection * _ODD_WITH_W[:, None]
-        u, w, t, n, p = values.reshape(5, *heights.shape)
-        return Fields(heights, u, w, t, n, p, self.surfaces)
+        masks = [layer_of == index for index in range(len(self.layers))]
+        return heights, [(index, here, self._s(index, inside[here])) for index, here in enumerate(masks)], mirrored
 
     def profiles(self, count: int = 401) -> list[Fields]:
         """The fields on each layer from edge to edge, at `count` heights."""

@@ -15,7 +15,7 @@ import numpy as np
 from .crests import default_mode
 from .eigenfunction import Eigenfunction
 from .errors import ParameterError, StabilityError
-from .flows.base import check_flow, span_of
+from .flows.base import check_flow, numeric, span_of
 from .optimum import k_max
 from .panels import GROWTH_RATE, PHASE_SPEED, WAVENUMBER
 from .plots import BLUE, GREY, RED, STYLE, draw
@@ -54,7 +54,7 @@ class Explorer:
         self.relation = self.spectrum = self.mode = None
         self.best = None
         self._count = len(k)
-        names = [item.name for item in fields(flow) if _moves(item)]
+        names = [item.name for item in fields(flow) if numeric(item)]
         with pyplot.rc_context({**STYLE, "figure.constrained_layout.use": False}):
             self.figure = pyplot.figure(f"stability explore {source}", figsize=(9.6, 5.6 + 0.28 * len(names)))
             self._axes(len(names))
@@ -312,8 +312,3 @@ class Explorer:
         self._lay()
         canvas.blit(self.figure.bbox)
         canvas.flush_events()
-
-
-def _moves(item):
-    """Whether a parameter is a number, and so has a slider."""
-    return "options" not in item.metadata and "table" not in item.metadata

@@ -247,7 +247,7 @@ def resolved(flow, layers, index, coefficients, together=False):
     try:
         return layers[index].resolved(coefficients, together)
     except NotSmooth as reason:
-        bottom = flow.bottom + sum(float(layer.height(np.array(1.0))) for layer in layers[:index])
+        bottom = flow.lowest + sum(float(layer.height(np.array(1.0))) for layer in layers[:index])
         raise reason.of(flow.name, bottom) from None
 
 

@@ -14,6 +14,7 @@ from math import pi
 
 import numpy as np
 
+from .cutoff import belongs_to_cut
 from .dense import dense_degrees, finite_rates
 from .errors import ModeLost, naming
 from .status import doubtful, is_resolved
@@ -26,6 +27,8 @@ _DRIFT = 1e-4  # relative difference of a rate between two degrees that counts a
 _LEAP = 0.05  # largest relative distance of a refined rate from the dense one
 _FAILURES = 3  # degrees at which a settled list may be found incomplete before that is said
 _COSTLY = 400  # unknowns of a dense problem beyond which a part of the depth asked for may do
+_BASE = 0.5, 0.3  # degree over terms of the base flow from which on modes of an unbounded fluid are listed; looked at
+_FRUITLESS = 5  # looks at an unbounded fluid after which it is taken to have no modes
 _SIDE = 6, 2, 2, 2  # points along the line and along the other sides of the contour
 _TURN = 1.0  # largest turn (radians) between neighbouring points of the contour
 _FLAT = 0.1  # total turn (radians) below which a list is complete: rounding would leave no such balance
@@ -51,30 +54,58 @@ class Listing:
 
 
 class _Class:
-    """One symmetry class at a wavenumber: its `solver`, the dense `rates` of the last degree and those before."""
+    """One symmetry class at a wavenumber: its `solver`, the dense `rates` of the last degree and those before.
+
+    Rates of a continuous spectrum, which a cut makes discrete, are no modes: they are kept apart as `unbound`, and so
+    is, in an unbounded fluid, what decays and does not settle.
+    """
 
     def __init__(self, solver, k):
         self.solver, self.k = solver, k
         self.rates, self.before, self.degree = np.empty(0, complex), np.empty(0, complex), 0
+        self.unbound, self.seen, self.earlier, self.looks = (*(np.empty(0, complex) for _ in range(3)), 0)
         self.symbols = solver.symbols(k)
 
     def look(self, degree):
-        self.degree, self.before, self.rates = degree, self.rates, finite_rates(self.solver, degree, self.symbols)
+        rates = finite_rates(self.solver, degree, self.symbols)
+        bound = self.solver.flow.bound(self.k, self.solver.width(self.k) * rates)
+        before, self.seen, self.looks, self.earlier = self.seen, rates[bound], self.looks + 1, self.rates
+        if self.looks < 3 or not self.solver.flow.unbounded:
+            self.enough = degree
+        self.degree, self.before, self.rates, self.unbound = degree, before, self.seen, rates[~bound]
+        if self.solver.flow.unbounded and self.looks > 1:
+            stays = _kept(self.seen, before)
+            self.rates, self.before = self.seen[stays], before[_kept(before, self.seen)]
+            self.unbound = np.concatenate((self.unbound, self.seen[~stays]))
 
     def settled(self, line):
         """Whether the rates above the line are, one to one, those of the degree before."""
-        if not len(self.before):
+        if self.looks < 2:
             return False
         now, before = (rates[rates.real > line] for rates in (self.rates, self.before))
         return _paired(now, self.before) and _paired(before, self.rates)
 
+    def steady(self, count):
+        """Whether, in an unbounded fluid, the leading modes that have settled were the leading ones before as well."""
+        if not self.solver.flow.unbounded:
+            return True
+        first, before = (rates[np.argsort(-rates.real)][:count] for rates in (self.rates, self.earlier))
+        return self.looks > 2 and len(first) == len(before) and _paired(first, before)
+
     def refined(self, line):
-        """The modes above the line; None in place of those that the iteration leaves."""
-        return [self._refined(rate) for rate in self.rates[self.rates.real > line]]
+        """The modes above the line; None in place of those that the iteration leaves; those of a cut are put aside."""
+        above = self.rates.real > line
+        modes = [self._refined(rate) for rate in self.rates[above]]
+        if self.solver.flow.unbounded:
+            cut = np.array([belongs_to_cut(self.solver, mode) if mode else rate.real < 0
+                            for mode, rate in zip(modes, self.rates[above], strict=True)], dtype=bool)
+            self.unbound = np.concatenate((self.unbound, self.rates[above][cut]))
+            modes = [mode for mode, aside in zip(modes, cut, strict=True) if not aside]
+        return modes
 
     def _refined(self, rate):
         try:
-            mode = self.solver.solve(self.k, rate, None, self.degree)
+            mode = self.solver.solve(self.k, rate, None, self.enough)
         except ModeLost:
             return None
         return mode if abs(mode.rate - rate) < _LEAP * abs(rate) else None
@@ -88,7 +119,7 @@ class _Class:
         """How many eigenvalues above the line are not among these modes."""
         known = np.array([mode.rate for mode in modes], dtype=complex)
         below = self.rates[self.rates.real <= line]
-        return _winding(self.solver, self.degree, self.k, np.concatenate((known, below)), line)
+        return _winding(self.solver, self.degree, self.k, np.concatenate((known, below, self.unbound)), line)
 
 
 def listed(solver, k, count):
@@ -104,16 +135,28 @@ def listed(solver, k, count):
 
 def _listed(solver, k, count):
     classes, failures = [_Class(half, k) for half in solver.halves], 0
-    for degree in dense_degrees(solver, FIRST, 2):
+    for degree in dense_degrees(solver, _rung(solver, FIRST, _BASE[0]), 2):
         for one in classes:
             one.look(degree)
+        if not len(_all_rates(classes)):  # no mode of an unbounded fluid is known yet
+            if classes[0].looks > _FRUITLESS:
+                break
+            continue
         line = _line(_all_rates(classes), count)
-        if all(one.settled(line) for one in classes):
+        if all(one.settled(line) and one.steady(count) for one in classes):
             found = _found(classes, line, degree)
             failures += 1
             if found.doubt is None or failures == _FAILURES:
-                return _checked(found, count, degree)
-    return _checked(_as_far_as_settled(classes, count, degree), count, degree)
+                return _checked(solver, found, count, degree)
+    return _checked(solver, _as_far_as_settled(classes, count, degree), count, degree)
+
+
+def _rung(solver, first, part):
+    """The rung to start from: at which the base flow is resolved where what does not settle is put aside."""
+    if not solver.flow.unbounded:
+        return first
+    enough = [rung for rung, degree in enumerate(solver.degrees) if degree >= part * solver.assembly.system.longest]
+    return max(first, min(enough, default=0))
 
 
 def _all_rates(classes):
@@ -131,8 +174,11 @@ def _found(classes, line, degree):
 def _as_far_as_settled(classes, count, degree):
     """The listing where the modes asked for do not settle: a sure part, if there is one, and the others behind it."""
     rates = _all_rates(classes)
+    if not len(rates):
+        return Listing((), 0, None)
     doubt = f"the least stable modes do not settle up to degree {degree}"
-    known = [_distinct(one.tried(_line(rates, 2 * count + _MORE))) for one in classes]
+    known = [[] if one.solver.flow.unbounded else _distinct(one.tried(_line(rates, 2 * count + _MORE)))
+             for one in classes]
     growth = np.sort(rates.real)[::-1]
     for behind in range(min(count + _SPARE, len(growth) - 1), 0, -1):
         line = (growth[behind - 1] + growth[behind]) / 2
@@ -153,11 +199,14 @@ def _sorted(modes):
     return tuple(sorted(modes, key=lambda mode: -mode.growth_rate))
 
 
-def _checked(found, count, degree):
+def _checked(solver, found, count, degree):
     """The listing, doubtful where it has fewer than `count` modes; raises ModeLost where it has none."""
     if not found.modes:
         raise ModeLost(f"no mode settles up to degree {degree}")
     if len(found.modes) < count:
+        if solver.flow.unbounded and found.doubt is None:
+            return replace(found, doubt=f"{len(found.modes)} of {count} modes are found up to degree {degree}: the "
+                                        "others would belong to the continuous spectrum of the unbounded fluid")
         doubt = f"{len(found.modes)} of {count} modes are found up to degree {degree}"
         return replace(found, sure=0 if found.doubt is None else found.sure,
                        doubt="; ".join(filter(None, (found.doubt, doubt))))
@@ -179,7 +228,7 @@ def near_neutral(solver, k, depth, rung):
     Where that takes a large dense problem, a part of the depth may do. Raises ModeLost where they do not settle.
     """
     one = _Class(solver, k)
-    degrees = dense_degrees(solver, max(rung, _LOWEST), 1)
+    degrees = dense_degrees(solver, _rung(solver, max(rung, _LOWEST), _BASE[1]), 1)
     for degree in degrees:
         one.look(degree)
         costly = degree * len(solver.assembly.system.fields) > _COSTLY
@@ -203,11 +252,17 @@ def _line(rates, count):
 
 def _paired(rates, others):
     """Whether each rate has an other one of its own within the drift allowed."""
-    if not len(rates):
-        return True
+    if not len(rates) or not len(others):
+        return not len(rates)
     distance = np.abs(rates[:, None] - others)
     nearest = distance.argmin(axis=1)
     return len(set(nearest.tolist())) == len(rates) and bool(np.all(distance.min(axis=1) < _DRIFT * np.abs(rates)))
+
+
+def _kept(rates, others):
+    """Which rates grow, or have an other one within the drift allowed."""
+    near = np.abs(rates[:, None] - others).min(axis=1, initial=np.inf) < _DRIFT * np.abs(rates)
+    return (rates.real >= 0) | near
 
 
 def _distinct(modes):

@@ -23,7 +23,7 @@ from .flows.sources import faults, origin
 from .journal import Journal
 from .neutral import check_parameter_name, critical_sweep
 from .optimum import k_max_sweep
-from .output import Row
+from .output import Row, measured
 from .panels import GROWTH_AT_K_MAX, GROWTH_RATE, K_MAX, PHASE_SPEED, WAVENUMBER, Axis, Grid
 from .pool import GUARD, MOST_WORKERS, processes
 from .record import Record
@@ -121,7 +121,10 @@ class Request:
     @property
     def results(self):
         """Names of the results at each point; the last is the status."""
-        return (() if self.vary is None else (self.vary,)) + _COLUMNS[self.quantity]
+        names = list(_COLUMNS[self.quantity])
+        place = names.index("error") + 1
+        names[place:place] = measured(self.flow, *(("growth_data_error",) if self.quantity == "k_max" else ()))
+        return (() if self.vary is None else (self.vary,)) + tuple(names)
 
     def pieces(self):
         """The pieces of the grid, in its order."""
@@ -131,7 +134,7 @@ class Request:
                      for first in range(0, len(inner), _PIECE[self.quantity])]
         names = (*(outer_name for outer_name, _ in outer), name)
         return tuple(Piece(index, self.quantity, tuple(self._at(names, (*line, value)) for value in stretch), self.k,
-                           self.vary, self.tolerance, self.max_degree)
+                           self.vary, self.tolerance, self.max_degree, len(self.results))
                      for index, (line, stretch) in enumerate(product(lines, stretches)))
 
     def _at(self, names, values):
@@ -145,7 +148,7 @@ class Request:
         """All that the results depend on, as plain values."""
         from . import __version__
 
-        fixed = {item.name: getattr(self.flow, item.name) for item in fields(self.flow) if item.name not in self.over}
+        fixed = {name: value for name, value in self.flow.described().items() if name not in self.over}
         return {"version": __version__, "flow": self.flow.name, **origin(type(self.flow)), "parameters": fixed,
                 "over": [[name, list(values)] for name, values in self.over.items()], "quantity": self.quantity,
                 "k": self.k and list(self.k), "vary": self.vary, "tolerance": self.tolerance,
@@ -163,6 +166,7 @@ class Piece:
     vary: str | None
     tolerance: float
     max_degree: int
+    width: int  # results of a point
 
     @property
     def points(self):
@@ -437,9 +441,10 @@ def _k_max_rows(piece):
 
 def _optimum_row(optimum):
     if not optimum.maxima:
-        return *[None] * 5, 0, None, None, optimum.status
+        return *[None] * (5 if optimum.flow.data is None else 7), 0, None, None, optimum.status
     second = optimum.maxima[1] if len(optimum.maxima) > 1 else None
-    return (optimum.k_max, optimum.growth_rate, optimum.phase_speed, optimum.error, optimum.best.mode.error,
+    errors = () if optimum.flow.data is None else (optimum.data_error, optimum.growth_data_error)
+    return (optimum.k_max, optimum.growth_rate, optimum.phase_speed, optimum.error, *errors, optimum.best.mode.error,
             len(optimum.maxima), second and second.k, second and second.growth_rate, optimum.status)
 
 
@@ -464,7 +469,7 @@ def _relation_rows(piece, relation):
             continue
         mode = modes[k]
         state = status.outgrown(mode.status) if faster and k >= faster.k else mode.status
-        yield mode.growth_rate, mode.phase_speed, mode.error, mode.degree, state
+        yield mode.growth_rate, mode.phase_speed, mode.error, *_data_error(relation.flow, mode), mode.degree, state
 
 
 def _neutral_rows(piece):
@@ -473,13 +478,18 @@ def _neutral_rows(piece):
 
     for found in _each(sweep, piece.flows):
         if isinstance(found, str):
-            yield None, *_nothing(piece, found)
+            yield _nothing(piece, found)
         else:
-            yield found.value, found.k, found.phase_speed, found.error, found.k_error, found.status
+            yield (found.value, found.k, found.phase_speed, found.error, *_data_error(found.flow, found), found.k_error,
+                   found.status)
+
+
+def _data_error(flow, result):
+    return () if flow.data is None else (result.data_error,)
 
 
 def _nothing(piece, why):
-    return *[None] * (len(_COLUMNS[piece.quantity]) - 1), why
+    return *[None] * (piece.width - 1), why
 
 
 def _each(sweep, flows):

@@ -25,7 +25,8 @@ class Mode(Eigenvalue):
 
     `sigma` complex growth rate, `error` bound of its absolute error, `slope` d sigma/dk, `truncation` and
     `rounding` the parts of the error, `degree` of the series, `status` "resolved" or what failed. `x`, `y`
-    (size,) hold the right and left eigenvector in the pencil of that degree, with y^H B x = 1.
+    (size,) hold the right and left eigenvector in the pencil of that degree, with y^H B x = 1. `data_error` is the
+    standard error of the growth rate from the errors of a measured base flow, None where nothing was measured.
     """
 
     flow: Any
@@ -41,6 +42,7 @@ class Mode(Eigenvalue):
     rate_slope: complex = field(repr=False)
     x: np.ndarray = field(repr=False, compare=False)
     y: np.ndarray = field(repr=False, compare=False)
+    data_error: float | None = field(default=None, repr=False, compare=False)
 
     @property
     def slope_error(self) -> float:
@@ -74,6 +76,23 @@ class Mode(Eigenvalue):
         from . import plots
 
         return plots.plot(self.panels(), ax, None, label, **line_options)
+
+    def base_flow_sensitivity(self, z: "ArrayLike") -> np.ndarray:
+        """Return S at heights z: delta sigma = integral of S(z) delta U(z) dz for a small change of the base flow.
+
+        What the change of U' = dU/dz does is in it. S has the units of sigma over those of U and z, and the shape of z.
+        Raises ParameterError outside the layers and for flows in which U enters not through convection alone.
+        """
+        from .response import density
+
+        return density(self, z)
+
+    def plot_base_flow_sensitivity(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw real and imaginary part of S against z into the matplotlib Axes `ax`, or a new one; return it."""
+        from . import plots
+        from .response import panel
+
+        return plots.plot((panel(self),), ax)
 
     def sensitivity(self) -> dict[str, complex | None]:
         """Return d sigma / d parameter of every numeric parameter, and "k", at the others fixed, from the left vector.

@@ -29,6 +29,7 @@ MEANINGS = {
     "elasticity": "relative change of the growth rate per relative change of the parameter",
     "growth_error": "bound of the absolute error of sigma",
     "k_error": "bound of the absolute error of k",
+    "growth_data_error": "standard error of the growth rate from the errors of the measured base flow",
     "maxima": "number of local maxima of the growth rate",
     "second_k_max": "wavenumber of the second largest maximum of the growth rate",
     "second_growth_rate": "growth rate of the second largest maximum",
@@ -82,7 +83,9 @@ def _real(name: str, values: np.ndarray) -> list[tuple[str, np.ndarray]]:
 
 def _meaning(record: Record, name: str, part: str) -> str:
     parameters = {item.name: item.metadata["meaning"] for item in fields(record.flow)}
-    meaning = {**parameters, **MEANINGS, "error": f"bound of the absolute error of {record.bounded}"}.get(name, name)
+    of = "the growth rate" if record.bounded == "sigma" else record.bounded
+    meaning = {**parameters, **MEANINGS, "error": f"bound of the absolute error of {record.bounded}",
+               "data_error": f"standard error of {of} from that of the measured base flow"}.get(name, name)
     return meaning if part == name else f"{meaning}, {'real' if part.endswith('real') else 'imaginary'} part"
 
 

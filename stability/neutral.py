@@ -16,8 +16,8 @@ import numpy as np
 from .checks import check_flag, check_range, check_wavenumbers, shown
 from .crossings import zeros_at
 from .errors import ModeLost, NotResolved, ParameterError, naming
-from .flows.base import check_flow, span_of
-from .output import Row
+from .flows.base import check_flow, numeric, span_of
+from .output import Row, measured
 from .panels import DOTS, OTHERS, PHASE_SPEED, POINTS, WAVENUMBER, Axis, Curve, Panel, scale_of, swept_curves
 from .record import Record
 from .ridges import Landscape
@@ -70,6 +70,7 @@ class NeutralPoint(_ZeroGrowth):
     and `k` (k_error is 0 where k was given); `status` is "resolved" or says what failed, and then the other
     numbers may be None. `others` are further values in the range that was searched: where the largest growth rate
     changes sign again, or, with "; inside" in their status, where a crest of growth does while other waves grow.
+    `data_error` is the standard error of `value` from that of a measured base flow, None where nothing was measured.
     """
 
     flow: Any
@@ -83,6 +84,7 @@ class NeutralPoint(_ZeroGrowth):
     settings: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
     others: "tuple[NeutralPoint, ...]" = field(default=(), repr=False)
     remark: str | None = field(default=None, repr=False)
+    data_error: float | None = field(default=None, repr=False)
     dimension: ClassVar[str] = "point"
 
     def panels(self) -> tuple[Panel, ...]:
@@ -109,7 +111,7 @@ class NeutralPoint(_ZeroGrowth):
     def row(self) -> Row:
         """Return the row of this point in the table of a curve."""
         return {"k": self.k, self.vary: self.value, "phase_speed": self.phase_speed, "error": self.error,
-                "status": self.status}
+                **{name: getattr(self, name) for name in measured(self.flow)}, "status": self.status}
 
 
 @dataclass(frozen=True, repr=False)
@@ -245,7 +247,7 @@ def _settings(land):
 
 def check_parameter_name(flow: "Flow", name: str) -> str:
     """Return `name` if it is a numeric parameter of the flow, else raise a ParameterError."""
-    known = [item.name for item in fields(flow) if "options" not in item.metadata]
+    known = [item.name for item in fields(flow) if numeric(item)]
     if not (isinstance(name, str) and name in known):
         raise ParameterError(f"{flow.name} has no numeric parameter {shown(name)} to vary; it has {', '.join(known)}")
     return name
@@ -254,7 +256,7 @@ def check_parameter_name(flow: "Flow", name: str) -> str:
 def _record(land, zero, settings):
     flow = land.planes[0].flow_at(zero.value)
     return NeutralPoint(flow, land.vary, zero.k, zero.value, zero.mode.phase_speed, zero.error, zero.k_error,
-                        zero.status, settings)
+                        zero.status, settings, data_error=zero.data_error)
 
 
 def _nothing(flow, vary, k, why):

@@ -12,7 +12,7 @@ from .crests import Maximum, crest, default_mode, look, may_grow, search_of, sur
 from .errors import ModeLost, NotResolved, naming
 from .flows.base import check_flow
 from .listing import listed
-from .output import Row
+from .output import Row, measured
 from .panels import (
     GROWTH_AT_K_MAX,
     GROWTH_RATE,
@@ -85,9 +85,20 @@ class Optimum(Record):
         others = Curve(k[1:], growth[1:], _OTHERS, OTHERS, error[1:], of=0)
         return (Panel(WAVENUMBER, GROWTH_RATE, (best, others) if len(k) > 1 else (best,)),)
 
+    @property
+    def data_error(self) -> float | None:
+        """Standard error of k_max from that of a measured base flow."""
+        return self.best.data_error
+
+    @property
+    def growth_data_error(self) -> float | None:
+        """That of the growth rate at k_max."""
+        return self.best.mode.data_error
+
     def rows(self) -> list[Row]:
         numbers = {name: getattr(self, name) if self.maxima else None
-                   for name in ("k_max", "growth_rate", "phase_speed", "error")}
+                   for name in ("k_max", "growth_rate", "phase_speed", "error",
+                                *measured(self.flow, "growth_data_error"))}
         return [{**numbers, "maxima": [[one.k, one.growth_rate] for one in self.maxima], "status": self.status}]
 
     def columns(self) -> dict[str, np.ndarray]:

@@ -15,7 +15,7 @@ from .flows.base import check_flow
 from .listing import leading_modes, listed
 from .memory import branch_of
 from .mode import Mode, require
-from .output import Row
+from .output import Row, measured
 from .panels import GROWTH_RATE, LINE, PHASE_SPEED, POINTS, WAVENUMBER, Curve, Panel, scale_of
 from .record import Record
 from .solver import DEGREES, TOLERANCE, Solver, check_accuracy
@@ -126,7 +126,8 @@ class DispersionRelation(Eigenvalues, Record):
         """Without numbers where the mode is lost, or where the most unstable one is not resolved: that is no result."""
         resolution = "degree" if self.method == "collocation" else "nodes"
         refused = mode is None or self.mode == "most-unstable" and not is_resolved(mode.status)
-        numbers = {name: None if refused else getattr(mode, name) for name in ("growth_rate", "phase_speed", "error")}
+        names = "growth_rate", "phase_speed", "error", *measured(self.flow)
+        numbers = {name: None if refused else getattr(mode, name) for name in names}
         return {"k": k, **numbers, resolution: getattr(mode, resolution, None),
                 "status": mode.status if mode else INTERRUPTED if self.lost.get(k) == INTERRUPTED else "lost"}
 

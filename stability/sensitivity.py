@@ -14,6 +14,7 @@ import numpy as np
 from . import chebyshev
 from .eigenfunction import sharpened
 from .errors import ParameterError
+from .flows.base import numeric
 from .mode import Mode
 from .output import Row
 from .panels import BARS, ELASTICITY, PARAMETER, Curve, Panel
@@ -93,7 +94,7 @@ def sensitivities(mode: Mode) -> Sensitivities:
     refined = sharpened(solver, mode)
     error = _SAFETY * abs(refined.slope - mode.slope) + mode.slope_error
     in_k = _slope(mode, "k", mode.k, refined.slope, error)
-    names = [item.name for item in fields(mode.flow) if "options" not in item.metadata]
+    names = [item.name for item in fields(mode.flow) if numeric(item)]
     return Sensitivities(mode.flow, mode, (in_k, *(_in_parameter(solver, mode, refined, name) for name in names)))
 
 

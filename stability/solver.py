@@ -5,6 +5,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from .checks import check_integer, check_tolerance
+from .cutoff import neglected
 from .flows.base import check_flow
 from .mode import Mode
 from .pencil import Layout, Pencil, Weights, weights_of
@@ -205,14 +206,30 @@ class Solver:
         width = self.width(k)
         sigma = width * eigen.rate
         rounding = width * _ROUNDING * eigen.rounding + width * eigen.spread + _EPS * abs(sigma)
+        lacking = 0.0  # at cuts: no degree mends that
+        if self.bars and self.flow.unbounded:
+            lacking = neglected(self, k, degree, eigen)
+        if self.bars and self.flow.cut:
+            from .response import spread_of  # needs solvers itself
+
+            rounding += spread_of(self, k, degree, eigen, self.flow.cut)
         truncation = width * eigen.truncation
-        error = truncation + rounding
+        error = truncation + rounding + lacking
         status = RESOLVED
         if not error <= self.tolerance * abs(sigma):  # nor where it is not a number
             status = f"error {error:.1e} exceeds tolerance at degree {degree}"
         slope = width * eigen.slope + (1 + self.flow.order) * sigma / k
         return Mode(self.flow, float(k), complex(sigma), float(error), complex(slope), degree, status,
-                    float(truncation), float(rounding), eigen.rate, eigen.slope, eigen.x, eigen.y)
+                    float(truncation), float(rounding), eigen.rate, eigen.slope, eigen.x, eigen.y,
+                    self._data_error(k, degree, eigen))
+
+    def _data_error(self, k, degree, eigen):
+        """What the errors of a measured base flow do to the growth rate, None without such errors or without bars."""
+        if not self.bars or self.flow.data is None:
+            return None
+        from .response import data_error  # needs solvers itself
+
+        return data_error(self, k, degree, eigen)
 
 
 def check_accuracy(tolerance, max_degree, names=("tolerance", "max_degree")):

@@ -12,7 +12,7 @@ from .errors import NotResolved
 from .flows.base import check_flow
 from .listing import listed
 from .mode import Mode, require
-from .output import Row
+from .output import Row, measured
 from .panels import GROWTH_RATE, PHASE_SPEED, POINTS, Curve, Panel
 from .record import Record
 from .solver import DEGREES, TOLERANCE, Solver, check_accuracy
@@ -62,7 +62,7 @@ class Spectrum(Eigenvalues, Record):
         return {"k": self.k}
 
     def _summary(self) -> list[Row]:
-        names = ("k", "growth_rate", "phase_speed", "error", "degree")
+        names = ("k", "growth_rate", "phase_speed", "error", *measured(self.flow), "degree")
         return [{**{name: getattr(mode, name) for name in names}, "status": status}
                 for mode, status in zip(self.modes, self.status, strict=True)]
 
@@ -123,7 +123,7 @@ def spectrum(flow: "Flow", k: float, modes: int = 10, *, tolerance: float = TOLE
         for mode in found.modes[:modes]:
             require(mode)
         if found.sure < modes:
-            raise NotResolved(f"{flow}, k={k:g}: {found.status[modes - 1 if len(found.modes) >= modes else -1]}")
+            raise NotResolved(f"{flow}, k={k:g}: {found.doubt}")
     settings = {"tolerance": tolerance, "max_degree": max_degree}
     return Spectrum(flow, k, found.modes[:modes], settings, found.status[:modes],
                     found.doubt if found.sure < modes else None)

@@ -66,6 +66,6 @@ def axis_label(flow: Any, name: str) -> str:
 def title_of(flow: Any, swept: Collection[str | None] = ()) -> str:
     """Return the name of a flow with its parameters but the swept ones; names that are the default are left out."""
     known = [item for item in fields(flow) if item.name not in swept]
-    shown = [assigned(flow, item.name) if "options" not in item.metadata else f"{item.name} {getattr(flow, item.name)}"
-             for item in known if "options" not in item.metadata or getattr(flow, item.name) != item.default]
+    shown = [assigned(flow, item.name) if "low" in item.metadata else f"{item.name} {getattr(flow, item.name)}"
+             for item in known if "low" in item.metadata or getattr(flow, item.name) != item.default]
     return f"{flow.name.replace('_', ' ')}: {', '.join(shown)}" if shown else flow.name.replace("_", " ")

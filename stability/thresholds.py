@@ -12,6 +12,7 @@ from math import exp, log
 import numpy as np
 
 from .errors import ModeLost, ParameterError
+from .response import error_of_zero
 from .ridges import BUDGET, Landscape, narrowed
 from .status import RESOLVED, is_resolved
 
@@ -41,6 +42,7 @@ class Zero:
     k_error: float
     status: str
     rise: float
+    data_error: float | None = None  # standard error of the value from that of a measured base flow
 
 
 @dataclass(frozen=True)
@@ -145,7 +147,9 @@ def zero_at(point, error, k_error, plane):
     status = point.mode.status
     if is_resolved(status) and not error <= max(plane.tolerance, _VALUE_TOLERANCE) * abs(point.value):
         status = f"error {error:.1e} of {plane.vary} exceeds tolerance"
-    return Zero(point.k, point.value, point.mode, float(error), float(k_error), status, point.by_value.real)
+    slope = point.by_value.real
+    return Zero(point.k, point.value, point.mode, float(error), float(k_error), status, slope,
+                error_of_zero(plane.solver(point.value), point.mode, slope))
 
 
 def _threshold(one, other):

@@ -36,6 +36,7 @@ import references
 from stability import NotResolved, ParameterError, StabilityError, dispersion, k_max, spectrum
 from stability.cli import main as command
 from stability.flows import FLOWS
+from stability.flows.base import numeric
 from stability.neutral import critical
 
 BUDGET = 20.0  # seconds of CPU that a point may take
@@ -130,6 +131,8 @@ class Draw:
         rule = item.metadata
         if "options" in rule:
             return self._one_of(rule["options"])
+        if "table" in rule:
+            return self._one_of(rule["kinds"].split("|"))
         if (rule["unbounded"] or rule["closed"]) and self._chance(0.3):
             return math.inf if rule["unbounded"] else 0
         usual, whole = RANGES.get(item.name, ((0.1, 10), (1e-8, 1e8)))
@@ -146,7 +149,15 @@ class Draw:
         return self._one_of(EDGES)
 
     def _make_consistent(self, parameters):
-        """Put the slope of roll waves between the angles of mu1 and mu2, mostly; next to one of them at times."""
+        """Put the slope of roll waves between the angles of mu1 and mu2, mostly; next to one of them at times.
+
+        Give a velocity the edges that it has, mostly.
+        """
+        if "profile" in parameters and not self._chance(0.15):
+            parameters.update(self._one_of([*[{"profile": "poiseuille", "bottom": "wall", "top": "wall"}] * 6,
+                                            {"profile": "blasius", "bottom": "wall", "top": "decay"},
+                                            {"profile": "tanh", "bottom": "decay", "top": "decay"}]),
+                              z_low=-math.inf, z_high=math.inf)
         if "mu2" not in parameters or self._chance(0.1):
             return
         low, high = sorted((parameters["mu1"], parameters["mu2"]))
@@ -174,7 +185,7 @@ class Draw:
         return self._options()
 
     def _critical(self, manner):
-        names = [item.name for item in fields(FLOWS[self.flow]) if "options" not in item.metadata]
+        names = [item.name for item in fields(FLOWS[self.flow]) if numeric(item)]
         return {"vary": self._one_of(names), "long_wave": self._chance(0.2), **self._options()}
 
     def _options(self):
@@ -316,7 +327,7 @@ def _arguments(draw, rng):
              if draw._chance(0.7)]
     k = _text(point.arguments.get("k", draw._k("usual")))
     k = draw._one_of([k, k, f"{k}:{draw._k('usual')}:3", f"{draw._k('mixed')},{k}"])
-    names = [item.name for item in fields(FLOWS[point.flow]) if "options" not in item.metadata]
+    names = [item.name for item in fields(FLOWS[point.flow]) if numeric(item)]
     over = f"--over={draw._one_of(names)}={draw._k('usual')},{draw._k('mixed')}"
     vary = f"--vary={draw._one_of(names)}"
     asked = draw._one_of([

@@ -354,6 +354,16 @@ def poiseuille(Re, k, guess, digits=30, radius=1e-3):
     return _root(determinant, guess, digits, radius)
 
 
+def shear(profile, Re, bottom, top, z_low, z_high, k, guess, digits=30, radius=1e-3):
+    """Growth rate of waves on a known velocity between walls: of plane Poiseuille flow alone.
+
+    Raises ArithmeticError for the others; `elements` has references for them.
+    """
+    if (profile.text(None), bottom, top, z_low, z_high) != ("poiseuille", "wall", "wall", -mp.inf, mp.inf):
+        raise ArithmeticError(f"no power series for {profile!r} between {bottom} and {top}")
+    return poiseuille(Re, k, guess, digits, radius)
+
+
 def couette(Re, k, guess, digits=30, radius=1e-3):
     """Growth rate of waves on U = z between plates at z = -1 and z = 1, where u = w = 0: series from z = -1."""
     def determinant(sigma):

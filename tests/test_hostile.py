@@ -247,6 +247,7 @@ anything = st.one_of(st.none(), st.booleans(), st.integers(), st.floats(), st.co
                      st.sampled_from(fuzz.HOSTILE))
 text = st.text(st.characters(exclude_characters="\0", exclude_categories=("Cs",)), max_size=12)
 names = st.sampled_from(sorted(FLOWS))
+EDGES = "wall", "free", "decay"
 
 
 def accepted(function, *arguments, **options):
@@ -274,7 +275,8 @@ def test_any_parameter_is_a_number_in_range_or_refused_in_one_line(name, data):
         return
     number = getattr(flow, item.name)
     assert type(number) is (str if "options" in item.metadata else float)
-    assert number in ("closed-form", "layer", 0.0, math.inf) or 1 / LARGEST <= number <= LARGEST
+    assert number in ("closed-form", "layer", 0.0, math.inf, -math.inf, *EDGES) \
+        or 1 / LARGEST <= abs(number) <= LARGEST
 
 
 @few

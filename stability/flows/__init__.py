@@ -16,15 +16,17 @@ if TYPE_CHECKING:
     from .film import Film
     from .poiseuille import Poiseuille
     from .rollwave import RollWave
+    from .shear import Shear
     from .two_layer_couette import TwoLayerCouette
     from .vortex import Vortex
 
-__all__ = ["FLOWS", "Couette", "Dune", "Film", "Flow", "Layer", "Poiseuille", "Profile", "RollWave", "TwoLayerCouette",
+__all__ = ["FLOWS", "Couette", "Dune", "Film", "Flow", "Layer", "Poiseuille", "Profile", "RollWave", "Shear",
+           "TwoLayerCouette",
            "Vortex", "choice", "find", "parameter", "register"]
 
 _LATER = {
     "Couette": ".couette", "Dune": ".dune", "Film": ".film", "Flow": ".base", "Layer": "..layer",
-    "Poiseuille": ".poiseuille", "Profile": "..layer", "RollWave": ".rollwave",
+    "Poiseuille": ".poiseuille", "Profile": "..layer", "RollWave": ".rollwave", "Shear": ".shear",
     "TwoLayerCouette": ".two_layer_couette", "Vortex": ".vortex", "choice": ".base", "parameter": ".base",
 }
 

@@ -1,8 +1,9 @@
 """What every flow is: a frozen dataclass of numbers with layers, conditions and a long-wave limit."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, fields
-from math import isfinite, isinf
-from typing import Any, ClassVar
+from math import inf, isfinite, isinf
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from ..checks import LARGEST, as_number, check_options, in_double_precision, shown
 from ..errors import ParameterError
@@ -18,8 +19,8 @@ def parameter(default: float, low: float | None = None, high: float | None = Non
               symbol: str | None = None) -> Any:
     """Declare a numeric parameter with its open range low < value < high, its meaning and the reason.
 
-    `closed` admits `low` itself as a value, `unbounded` admits inf. Neutral values are looked for in the range `look`.
-    `symbol` is what figures call it, in TeX, if that is not its name.
+    `closed` admits `low` itself as a value, `unbounded` admits inf (and -inf where there is no `low`). Neutral values
+    are looked for in the range `look`. `symbol` is what figures call it, in TeX, if that is not its name.
     """
     return field(default=default, metadata={"low": low, "high": high, "meaning": meaning, "reason": reason,
                                             "closed": closed, "unbounded": unbounded, "look": look, "symbol": symbol})
@@ -28,6 +29,17 @@ def parameter(default: float, low: float | None = None, high: float | None = Non
 def choice(*options: str, meaning: str) -> Any:
     """Declare a parameter that takes one of a few names; the first is the default."""
     return field(default=options[0], metadata={"options": options, "meaning": meaning})
+
+
+def table(default: str, read: Callable[[str, Any], Any], *, kinds: str, meaning: str) -> Any:
+    """Declare a parameter that is a value of its own, such as a file of data: `read(name, value)` makes it from what is
+    given, or raises a ParameterError; `kinds` says what that may be."""
+    return field(default=default, metadata={"table": True, "read": read, "kinds": kinds, "meaning": meaning})
+
+
+def numeric(item: Any) -> bool:
+    """Whether a field of a flow is a number, that can be swept, varied and differenced: no name and no table."""
+    return not {"options", "table"} & item.metadata.keys()
 
 
 @dataclass(frozen=True)
@@ -45,9 +57,15 @@ class Flow:
     order: ClassVar[int] = 0  # sigma = k^(1 + order) * rate
     surfaces: ClassVar[tuple[str, ...]] = ()
     functions: ClassVar[tuple[str, ...]] = ()
-    bottom: ClassVar[float] = 0.0  # z of the lowest edge
+    if TYPE_CHECKING:
+        bottom: ClassVar[float]
+    else:  # not annotated: else it would come first among the parameters of a flow that has one of this name
+        bottom = 0.0  # z of the lowest edge
     wavenumber: ClassVar[float] = 1.0  # at which the mode leads that is followed where there is no surface mode
     decays: ClassVar[bool] = False  # whether it is known that all modes of all such flows decay
+    unbounded: ClassVar[bool] = False  # whether the fluid is cut where it should go on to infinity
+    data: ClassVar[Any] = None  # what was measured: `basis(z)`, `slopes(z)` and `covariance` of the terms of U
+    cut: ClassVar[float] = 0.0  # bound on what a series that stands for U leaves out of it
     reflection: ClassVar[int] = 0  # of w in the lowest edge, 1 even or -1 odd, where that is a line of symmetry
 
     def __init_subclass__(cls, **options: Any) -> None:
@@ -90,6 +108,30 @@ class Flow:
         """Return flows whose modes together are those of this one: itself, or symmetry classes on half the domain."""
         return (self,)
 
+    @property
+    def lowest(self) -> float:
+        """z of the lowest edge of its layers."""
+        return self.bottom
+
+    def described(self) -> dict[str, Any]:
+        """Return the parameters as numbers and texts that tell this flow from all others."""
+        return {item.name: getattr(self, item.name) for item in fields(self)}
+
+    def left_out(self, edges: Any, names: Any, k: float, sigma: complex) -> dict[int, Any]:
+        """Return {index of a condition: what it lacks} where a fluid is cut, at growth rate sigma."""
+        return {}
+
+    def shortest(self) -> float:
+        """Return a wavenumber beyond which no mode grows, as is known without solving anything; inf if none is."""
+        return inf
+
+    def bound(self, k: float, sigma: Any) -> Any:
+        """Return which growth rates sigma (modes,) are those of modes that fall off where the fluid is cut.
+
+        The others may belong to the continuous spectrum of an unbounded fluid, which a cut makes discrete.
+        """
+        return abs(sigma) >= 0
+
     @classmethod
     def has_surface_mode(cls) -> bool:
         """Whether there is a slow surface mode to follow from k -> 0."""
@@ -111,12 +153,14 @@ def check_parameter(flow, item, value):
     rule = item.metadata
     if "options" in rule:
         return check_options(f"{flow}: {item.name}", value, rule["options"])
+    if "table" in rule:
+        return rule["read"](f"{flow}: {item.name}", value)
     number = as_number(value)
     if number is None:
         raise ParameterError(f"{flow}: {item.name} must be a number in {allowed(rule)} (got {shown(value)})")
     inside = (rule["low"] is None or number > rule["low"] or rule["closed"] and number == rule["low"]) \
         and (rule["high"] is None or number < rule["high"])
-    if not inside or not (isfinite(number) or rule["unbounded"] and number > 0):
+    if not inside or not (isfinite(number) or rule["unbounded"] and (number > 0 or rule["low"] is None)):
         reason = f": {rule['reason']}" if rule["reason"] else ""
         raise ParameterError(f"{flow}: {item.name} must lie in {allowed(rule)}{reason} (got {number:g})")
     if isfinite(number) and not in_double_precision(number):
@@ -129,9 +173,12 @@ def allowed(rule):
     """The admissible values in words: `(1, inf)` is open, `[0, inf]` admits its ends, `a | b` is a choice."""
     if "options" in rule:
         return " | ".join(rule["options"])
+    if "table" in rule:
+        return rule["kinds"]
     low = "-inf" if rule["low"] is None else f"{rule['low']:g}"
     high = "inf" if rule["high"] is None else f"{rule['high']:g}"
-    return f"{'[' if rule['closed'] else '('}{low}, {high}{']' if rule['unbounded'] else ')'}"
+    closed = rule["closed"] or rule["unbounded"] and rule["low"] is None
+    return f"{'[' if closed else '('}{low}, {high}{']' if rule['unbounded'] else ')'}"
 
 
 def span_of(flow, vary):

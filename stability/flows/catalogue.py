@@ -44,7 +44,7 @@ class Catalogue(MutableMapping):
 FLOWS = Catalogue({
     "vortex": "vortex:Vortex", "dune": "dune:Dune", "rollwave": "rollwave:RollWave", "film": "film:Film",
     "two_layer_couette": "two_layer_couette:TwoLayerCouette", "poiseuille": "poiseuille:Poiseuille",
-    "couette": "couette:Couette",
+    "couette": "couette:Couette", "shear": "shear:Shear",
 })
 
 

@@ -157,7 +157,7 @@ def _verified(flow: Any) -> None:
     labels = [layer.name for layer in layers]
     if len(set(labels)) < len(labels) or not all(isinstance(one, str) and one.isidentifier() for one in labels):
         raise ParameterError(f"{flow.name}: layers must have different names, which are words (got {shown(labels)})")
-    bottom = flow.bottom
+    bottom = flow.lowest
     for layer in layers:
         try:
             bottom += _check_layer(layer, bottom)

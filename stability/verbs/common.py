@@ -9,7 +9,7 @@ from pathlib import Path
 from ..checks import as_number
 from ..errors import ParameterError
 from ..flows import FLOWS, find
-from ..flows.base import allowed, check_flow
+from ..flows.base import allowed, check_flow, numeric
 from ..flows.catalogue import nearest
 from ..output import check_writable, render, terminal_width, whole_file, write
 from ..solver import DEGREES, TOLERANCE, check_accuracy
@@ -88,9 +88,8 @@ def _add_parameters(verb, words):
     group = verb.add_argument_group(f"parameters of {flow.name}", flow.title)
     for item in fields(flow):
         text = f"{item.metadata['meaning']}; {allowed(item.metadata)}, default {item.default}".replace("%", "%%")
-        metavar = "NAME" if "options" in item.metadata else _NUMBER
         for spelling in dict.fromkeys((flag(item), f"--{item.name}")):
-            group.add_argument(spelling, dest=f"parameter {item.name}", metavar=metavar,
+            group.add_argument(spelling, dest=f"parameter {item.name}", metavar=_metavar(item),
                                help=text if spelling == flag(item) else argparse.SUPPRESS)
 
 
@@ -107,6 +106,10 @@ def _flow_named(verb, words):
             long = word.startswith("--") and "=" not in word
             value_follows = option.nargs != 0 if option else long
     return None
+
+
+def _metavar(item):
+    return _NUMBER if numeric(item) else "FILE" if "table" in item.metadata else "NAME"
 
 
 def flag(item):
@@ -165,7 +168,7 @@ def swept_values(text, flow, option="--over"):
     """The parameter and its values of NAME=SPEC."""
     name, _, spec = text.partition("=")
     name = name.replace("-", "_")
-    known = [item.name for item in fields(flow) if "options" not in item.metadata]
+    known = [item.name for item in fields(flow) if numeric(item)]
     if name not in known:
         raise ParameterError(f"{option}: {flow.name} has no parameter {name!r}{nearest(name, known)}; "
                              f"it has {', '.join(known)}")

@@ -4,7 +4,7 @@ from dataclasses import fields
 from textwrap import wrap
 
 from ..flows import FLOWS, find
-from ..flows.base import allowed, span_of
+from ..flows.base import allowed, numeric, span_of
 from ..output import terminal_width, write
 from .common import FLOW, flag
 
@@ -39,7 +39,7 @@ def _describe(flow, width):
 
 def _meaning(flow, item):
     """What a parameter means, and where neutral values of it are looked for."""
-    if "options" in item.metadata:
+    if not numeric(item):
         return item.metadata["meaning"]
     low, high = span_of(flow, item.name)
     return f"{item.metadata['meaning']}; searched from {low:g} to {high:g}"
