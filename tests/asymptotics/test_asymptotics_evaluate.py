@@ -37,8 +37,9 @@ def test_numbers_are_near_those_of_dispersion(tmp_path, capsys, name):
     assert (status, err) == (0, "")
     assert list(series.rows()[0]) == list(relation.rows()[0])
     sigma = series["growth_rate"] - 1j * series["k"] * series["phase_speed"]
-    assert np.abs(sigma / relation.sigma - 1).max() < 1e-2
-    assert abs(sigma / relation.sigma - 1).argmin() == 0
+    off = np.abs(sigma / relation.sigma - 1)
+    assert off.max() < 1e-2
+    assert off[0] <= off[-1] + 1e-14
     assert {row["status"].partition(";")[0].partition("^")[0] for row in series} == {"series to k"}
 
 
