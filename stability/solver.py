@@ -209,10 +209,10 @@ class Solver:
         lacking = 0.0  # at cuts: no degree mends that
         if self.bars and self.flow.unbounded:
             lacking = neglected(self, k, degree, eigen)
-        if self.bars and self.flow.cut:
+        if self.bars and self.flow.chopped:
             from .response import spread_of  # needs solvers itself
 
-            rounding += spread_of(self, k, degree, eigen, self.flow.cut)
+            rounding += spread_of(self, k, degree, eigen, self.flow.chopped)
         truncation = width * eigen.truncation
         error = truncation + rounding + lacking
         status = RESOLVED

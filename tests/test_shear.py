@@ -296,8 +296,8 @@ def test_the_response_is_refused_outside_and_drawn():
     with pytest.raises(ParameterError, match="z must lie in the layers"):
         mode.base_flow_sensitivity(-0.1)
     axis = mode.plot_base_flow_sensitivity(Figure().subplots())
-    assert [line.get_label() for line in axis.get_lines()[:2]] == ["growth rate", "frequency"]
-    assert axis.get_lines()[0].get_ydata().max() < 20
+    assert [line.get_label() for line in axis.get_lines()[1:3]] == ["growth rate", "frequency"]
+    assert axis.get_lines()[1].get_ydata().max() < 20
 
 
 # -- the verbs -------------------------------------------------------------------------------------------

@@ -65,7 +65,7 @@ class Flow:
     decays: ClassVar[bool] = False  # whether it is known that all modes of all such flows decay
     unbounded: ClassVar[bool] = False  # whether the fluid is cut where it should go on to infinity
     data: ClassVar[Any] = None  # what was measured: `basis(z)`, `slopes(z)` and `covariance` of the terms of U
-    cut: ClassVar[float] = 0.0  # bound on what a series that stands for U leaves out of it
+    chopped: ClassVar[float] = 0.0  # bound on what a series that stands for U leaves out of it
     reflection: ClassVar[int] = 0  # of w in the lowest edge, 1 even or -1 odd, where that is a line of symmetry
 
     def __init_subclass__(cls, **options: Any) -> None:

@@ -75,7 +75,7 @@ class Shear(Flow):
         return _fluid(self._key).curve.data
 
     @property
-    def cut(self) -> float:  # type: ignore[override]
+    def chopped(self) -> float:  # type: ignore[override]
         return self._base.cut
 
     def heights(self, s):
