@@ -49,6 +49,11 @@ class Assembly:
             self._pencils[degree] = Pencil(layout, self._values[layout.table], self.system)
         return self._pencils[degree]
 
+    @property
+    def small(self):
+        """Whether its matrices take a few megabytes at most."""
+        return all(table.degree * table.structure.longest <= _SMALL for table in self._values)
+
     def _layout(self, degree):
         structure, size = self.system.structure, max(_LEAST, 1 << int(degree - 1).bit_length())
         if size * structure.longest <= _SMALL:
@@ -93,11 +98,16 @@ class Solver:
         self.pencil = self.assembly.pencil
         self._known = {}
 
-    @cached_property
+    @property
     def halves(self):
         """Solvers of the symmetry classes of the flow: this one alone where it has none."""
-        return tuple(self if half == self.flow else Solver(half, self.tolerance, self.degrees[-1], bars=self.bars)
-                     for half in self.flow.halves())
+        return self._halves or (self,)  # not kept: a solver that refers to itself would outlive its use
+
+    @cached_property
+    def _halves(self):
+        parts = self.flow.halves()
+        return () if parts == (self.flow,) else tuple(Solver(half, self.tolerance, self.degrees[-1], bars=self.bars)
+                                                      for half in parts)
 
     def prepare(self, k):
         """Evaluate the flow's functions of k, and the weights, for a whole array (count,) at once."""
