@@ -10,6 +10,7 @@ nothing is filtered by size.
 from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any
+from weakref import proxy
 
 import numpy as np
 from scipy.linalg import qr
@@ -70,12 +71,13 @@ def _eigenvalues(g, rank):
 def _finite_count(solver, degree):
     """How many eigenvalues are finite: one per degree for every layer that carries the rate, plus a constant."""
     system = solver.assembly.system
-    return _smallest_count(_Structure(system.pattern, solver.assembly)) + (degree - _SMALL) * system.dynamic_layers
+    count = _smallest_count(_Structure(system.pattern, proxy(solver.assembly)))
+    return count + (degree - _SMALL) * system.dynamic_layers
 
 
 @dataclass(frozen=True)
 class _Structure:
-    """What the number of finite eigenvalues depends on, and an assembly that has it."""
+    """What the number of finite eigenvalues depends on, and an assembly that has it: a proxy, to keep no matrices."""
 
     pattern: tuple
     assembly: Any = field(compare=False)

@@ -2,7 +2,8 @@
 
 A walk takes the same steps whatever is asked, so that a branch taken up again is the one that would be followed anew.
 Only those are kept that have met nothing, no collision, near meeting or end: what is met is told by the call that
-meets it, and the next one is to meet it too. Who uses a branch has it alone: another thread follows its own.
+meets it, and the next one is to meet it too; and of those only what takes little memory. Who uses a branch has it
+alone: another thread follows its own.
 """
 
 from collections import OrderedDict
@@ -27,7 +28,7 @@ def branch_of(solver, make):
         return
     branch = branch or make(solver)
     yield branch
-    if branch.uneventful:
+    if branch.uneventful and branch.solver.assembly.small:
         with _lock:
             _branches[key] = branch
             while len(_branches) > KEPT:

@@ -56,7 +56,7 @@ class Layout:
     """
 
     def __init__(self, table, degree):
-        self.structure, self.degree, self._common = table.structure, degree, {}
+        self.table, self.structure, self.degree, self._common = table, table.structure, degree, {}
         columns, rows = self._place(table)
         reach = np.array([degree + row.extra + table.tail if number < table.structure.equations else 1
                           for number, row in enumerate(table.structure.rows)])

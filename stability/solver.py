@@ -20,8 +20,8 @@ TOLERANCE = 1e-10  # default bound on error / |sigma| for a resolved mode
 
 _FAR_BELOW = 1e-15  # relative truncation error that is aimed at with the default tolerance
 _LEAST = 32  # degree of the smallest table of entries
-_KEPT = 96  # largest degree whose layouts are kept for other flows
-_LAYOUTS, _TABLES = 64, 16  # that are kept: some ten megabytes
+_SMALL = 1024  # degree times terms of the longest series up to which layouts, some megabytes each, are kept ...
+_LAYOUTS, _TABLES = 48, 8  # ... for other flows, and how many
 _TOGETHER = 64, 4096  # points refined at once, and those times the degree: bounds the memory
 _EPS = np.finfo(float).eps
 _REMEMBERED = 10_000  # wavenumbers whose functions and weights are kept
@@ -44,11 +44,23 @@ class Assembly:
 
     def pencil(self, degree):
         if degree not in self._pencils:
-            layout, table = _layout(self.system.structure, degree)
-            if table not in self._values:
-                self._values[table] = table.values(self.system.coefficients)
-            self._pencils[degree] = Pencil(layout, self._values[table], self.system)
+            layout = self._layout(degree)
+            if layout.table not in self._values:
+                self._values[layout.table] = layout.table.values(self.system.coefficients)
+            self._pencils[degree] = Pencil(layout, self._values[layout.table], self.system)
         return self._pencils[degree]
+
+    @property
+    def small(self):
+        """Whether its matrices take a few megabytes at most."""
+        return all(table.degree * table.structure.longest <= _SMALL for table in self._values)
+
+    def _layout(self, degree):
+        structure, size = self.system.structure, max(_LEAST, 1 << int(degree - 1).bit_length())
+        if size * structure.longest <= _SMALL:
+            return _layout_of(structure, degree, size)
+        large = (table for table in self._values if table.degree == size)
+        return Layout(next(large, None) or Table(structure, size), degree)
 
     def serving(self, flow):
         """Return this assembly if its equations are those of `flow` too, else a new one.
@@ -59,17 +71,9 @@ class Assembly:
         return self if other.system == self.system else other
 
 
-def _layout(structure, degree):
-    """The layout of this degree, and its table."""
-    if degree > _KEPT:
-        return _layout_of.__wrapped__(structure, degree)
-    return _layout_of(structure, degree)
-
-
 @lru_cache(maxsize=_LAYOUTS)
-def _layout_of(structure, degree):
-    table = _table_of(structure, max(_LEAST, 1 << int(degree - 1).bit_length()))
-    return Layout(table, degree), table
+def _layout_of(structure, degree, size):
+    return Layout(_table_of(structure, size), degree)
 
 
 @lru_cache(maxsize=_TABLES)
@@ -95,11 +99,16 @@ class Solver:
         self.pencil = self.assembly.pencil
         self._known = {}
 
-    @cached_property
+    @property
     def halves(self):
         """Solvers of the symmetry classes of the flow: this one alone where it has none."""
-        return tuple(self if half == self.flow else Solver(half, self.tolerance, self.degrees[-1], bars=self.bars)
-                     for half in self.flow.halves())
+        return self._halves or (self,)  # not kept: a solver that refers to itself would outlive its use
+
+    @cached_property
+    def _halves(self):
+        parts = self.flow.halves()
+        return () if parts == (self.flow,) else tuple(Solver(half, self.tolerance, self.degrees[-1], bars=self.bars)
+                                                      for half in parts)
 
     def prepare(self, k):
         """Evaluate the flow's functions of k, and the weights, for a whole array (count,) at once."""

@@ -19,7 +19,7 @@ from stability.continuation import bounded_maximum, continue_in_k
 from stability.dense import finite_rates
 from stability.errors import NotSmooth
 from stability.layer import Layer, Profile
-from stability.solver import Solver
+from stability.solver import DEGREES, Solver
 from stability.thesis import thesis_setting
 from stability.wavy_wall import response
 
@@ -201,15 +201,18 @@ def test_bvp_gives_up_at_a_collision_that_collocation_crosses():
 
 
 def test_raw_pencil_has_spurious_growing_modes():
-    """QZ of the undeflated matrices: its infinite eigenvalues come out finite, some with huge growth rates."""
+    """QZ of the undeflated matrices: infinite eigenvalues come out finite, at half of the degrees with huge growth
+    rates; at which ones is a matter of rounding."""
     solver = Solver(VORTEX)
-    pencil = solver.pencil(24)
-    values = eig(*pencil.pair(pencil.weights(solver.symbols(2.0))), right=False)
-    values = values[np.isfinite(values)]
-    assert values.real.max() > 1e3
-    rates = finite_rates(solver, 24, solver.symbols(2.0))
-    assert rates[0].real == pytest.approx(VORTEX_2 / 4, rel=1e-13)
-    assert np.all(rates.real < 0)
+    largest = []
+    for degree in DEGREES[4:11]:
+        pencil = solver.pencil(degree)
+        values = eig(*pencil.pair(pencil.weights(solver.symbols(2.0))), right=False)
+        largest.append(values[np.isfinite(values)].real.max())
+        rates = finite_rates(solver, degree, solver.symbols(2.0))
+        assert rates[0].real == pytest.approx(VORTEX_2 / 4, rel=1e-9)
+        assert np.all(rates.real < 0)
+    assert max(largest) > 1e3
 
 
 def test_leading_mode_is_not_the_surface_mode():
