@@ -14,7 +14,7 @@ from stability import flows
 from stability.mapplots import HATCHES, branch_changes, hatch, jumps, mesh, states
 from stability.maps import parameter_map
 from stability.pool import cores
-from stability.wellposed import well_posedness
+from stability.short_waves import well_posedness
 
 Re = 0.1, 1e4
 GRIDS = {0.4: (60, 3.0), 0.7: (24, 2.0)}  # {mu1: (points along each axis, largest excess Shields ratio)}

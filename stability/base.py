@@ -12,9 +12,9 @@ from .flows.base import check_flow
 from .output import Row
 from .panels import Axis, Curve, Panel
 from .record import Record
+from .short_waves import numbers
 from .smooth import Rough, fit
 from .status import RESOLVED
-from .wellposed import numbers
 
 HEIGHT = Axis("z", "height $z$")
 VELOCITY, SHEAR_RATE = Axis("U", "velocity $U$"), Axis("dU", "shear rate $U'$")

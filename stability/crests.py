@@ -20,9 +20,9 @@ from .errors import ModeLost
 from .listing import near_neutral, same
 from .memory import branch_of
 from .response import error_of_maximum
+from .short_waves import ill_posed_somewhere, numbers
 from .status import is_resolved
 from .tracking import Walk
-from .wellposed import ill_posed_somewhere, numbers
 
 SEARCH = 1e-2, 100.0  # range of k; with a surface mode its lower end moves down until growth is a power of k
 ROUGH = 1e-4  # tolerance of the look: small systems find the brackets

@@ -23,6 +23,7 @@ from .flows.sources import faults, origin
 from .journal import Journal
 from .neutral import check_parameter_name, critical_sweep
 from .optimum import k_max_sweep
+from .outgrown import outgrown
 from .output import Row, measured
 from .panels import GROWTH_AT_K_MAX, GROWTH_RATE, K_MAX, PHASE_SPEED, WAVENUMBER, Axis, Grid
 from .pool import GUARD, MOST_WORKERS, processes
@@ -30,7 +31,6 @@ from .record import Record
 from .relation import default_mode, dispersion
 from .solver import DEGREES, TOLERANCE, check_accuracy
 from .symbols import axis_label, symbol_of
-from .wellposed import outgrown
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

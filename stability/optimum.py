@@ -12,6 +12,7 @@ from .crests import Maximum, crest, default_mode, look, may_grow, search_of, sur
 from .errors import ModeLost, NotResolved, naming
 from .flows.base import check_flow
 from .listing import listed
+from .outgrown import faster
 from .output import Row, measured
 from .panels import (
     GROWTH_AT_K_MAX,
@@ -27,11 +28,11 @@ from .panels import (
     swept_curves,
 )
 from .record import Record
+from .short_waves import well_posedness
 from .solver import DEGREES, TOLERANCE, Assembly, Solver, check_accuracy
 from .status import STABLE, is_outgrown, is_resolved, outgrown
 from .symbols import axis_label, symbol_of, value_text
 from .threads import one_thread
-from .wellposed import faster, well_posedness
 
 if TYPE_CHECKING:
     from .flows import Flow

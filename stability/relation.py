@@ -27,7 +27,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from .flows import Flow
-    from .wellposed import Outgrown, Strip
+    from .outgrown import Outgrown
+    from .short_waves import Strip
 
 MODES = ("surface", "leading", "most-unstable")
 
@@ -106,16 +107,16 @@ class DispersionRelation(Eigenvalues, Record):
         """What the model says of itself: the mode is outgrown, or the flow is ill posed."""
         if self.mode == MODES[0] or self.method != "collocation":
             return [self._outgrown] if self._outgrown else []
-        from .wellposed import well_posedness
+        from .short_waves import well_posedness
 
         return well_posedness(self.flow).strips
 
     @cached_property
     def _outgrown(self) -> "Outgrown | None":
         """Where an internal mode of an ill-posed flow grows faster."""
-        from . import wellposed
+        from .outgrown import outgrown
 
-        return wellposed.outgrown(self) if self.method == "collocation" else None
+        return outgrown(self) if self.method == "collocation" else None
 
     def _points(self) -> "list[tuple[float, Mode | None]]":
         """Every wavenumber asked for with its mode, None where that was lost."""

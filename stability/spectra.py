@@ -15,8 +15,9 @@ from .mode import Mode, require
 from .output import Row, measured
 from .panels import GROWTH_RATE, PHASE_SPEED, POINTS, Curve, Panel
 from .record import Record
+from .short_waves import well_posedness
 from .solver import DEGREES, TOLERANCE, Solver, check_accuracy
-from .status import INTERRUPTED
+from .status import INTERRUPTED, is_resolved
 from .threads import one_thread
 
 if TYPE_CHECKING:
@@ -99,10 +100,24 @@ def _panels(spectra):
 
 
 def _notes(spectra):
-    from .wellposed import notes_on
-
     doubts = [f"{one.flow}, k = {one.k:g}: {one.doubt}" for one in spectra if one.doubt]
-    return [*doubts, *notes_on(list(spectra))]
+    return [*doubts, *_ill_posed(list(spectra))]
+
+
+def _ill_posed(spectra: list[Spectrum]) -> list[str]:
+    """What an ill-posed flow does to its spectra: modes that do not converge, internal modes that lead it."""
+    from .outgrown import outgrown
+    from .relation import dispersion
+
+    flow = spectra[0].flow
+    strips = well_posedness(flow).strips
+    if not strips:
+        return []
+    notes = [f"{flow}, k = {one.k:g}: the spectrum does not converge; {'; '.join(map(str, strips))}"
+             for one in spectra if not all(is_resolved(mode.status) for mode in one.modes)]
+    wavenumbers = [one.k for one in spectra]
+    faster = outgrown(dispersion(flow, wavenumbers, strict=False)) if flow.has_surface_mode() else None
+    return [*notes, f"{flow}: {faster}"] if faster else notes
 
 
 @one_thread

@@ -21,8 +21,9 @@ from stability.maps import parameter_map
 from stability.neutral import NeutralPoint, NeutralSweep, critical, critical_sweep, neutral_curve
 from stability.optimum import Optima, k_max_sweep
 from stability.sensitivity import sensitivities
+from stability.short_waves import well_posedness
 from stability.spectra import Spectra
-from stability.wellposed import growth_with_degree, well_posedness
+from stability.wellposed import growth_with_degree
 
 BED, FILM = flows.Dune(), flows.Film()
 LOST = {"mode": "most-unstable", "max_degree": 14, "strict": False}

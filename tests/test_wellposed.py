@@ -7,9 +7,11 @@ import pytest
 
 from stability import NotResolved, dispersion, flows, k_max, spectrum
 from stability.cli import main
+from stability.outgrown import outgrown
 from stability.relation import DispersionRelation
 from stability.rheology import Linear, well_posed_band
-from stability.wellposed import growth_with_degree, outgrown, well_posedness
+from stability.short_waves import well_posedness
+from stability.wellposed import growth_with_degree
 
 ILL = flows.Dune(shields=1.05, mu1=0.7, b=1.0, Re=10.0)
 INTERNAL = 7327.0151706242 + 24715.4910767460j  # power series in 30-digit arithmetic

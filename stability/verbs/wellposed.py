@@ -9,9 +9,10 @@ from ..checks import check_integer
 from ..output import Row
 from ..panels import LINE, WAVENUMBER, Axis, Band, Curve, Panel
 from ..record import Record
+from ..short_waves import WellPosedness, well_posedness
 from ..specs import parse_spec
 from ..status import INTERRUPTED, RESOLVED
-from ..wellposed import WellPosedness, growth_with_degree, well_posedness
+from ..wellposed import growth_with_degree
 from .common import add_verb, collect, flow_of, report
 
 _POINTS = "21"
