@@ -11,7 +11,8 @@ import numpy as np
 
 from .checks import as_file_name, as_number, flat, shown
 from .errors import ParameterError
-from .velocity import DIGEST
+
+DIGEST = 12  # hexadecimal digits of a digest that are shown
 
 LEAST = 8  # points of a table
 _MOST = 100_000

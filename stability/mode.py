@@ -83,14 +83,14 @@ class Mode(Eigenvalue):
         What the change of U' = dU/dz does is in it. S has the units of sigma over those of U and z, and the shape of z.
         Raises ParameterError outside the layers and for flows in which U enters not through convection alone.
         """
-        from .response import density
+        from .velocity_response import density
 
         return density(self, z)
 
     def plot_base_flow_sensitivity(self, ax: "Axes | None" = None) -> "Axes":
         """Draw real and imaginary part of S against z into the matplotlib Axes `ax`, or a new one; return it."""
         from . import plots
-        from .response import panel
+        from .velocity_response import panel
 
         return plots.plot((panel(self),), ax)
 

@@ -10,6 +10,7 @@ from .flows.base import check_flow
 from .mode import Mode
 from .pencil import Layout, Pencil, Weights, weights_of
 from .refine import refine, refine_many
+from .response import data_error, spread_of
 from .status import RESOLVED
 from .system import System
 from .table import Table
@@ -219,7 +220,6 @@ class Solver:
         if self.bars and self.flow.unbounded:
             lacking = neglected(self, k, degree, eigen)
         if self.bars and self.flow.chopped:
-            from .response import spread_of  # needs solvers itself
 
             rounding += spread_of(self, k, degree, eigen, self.flow.chopped)
         truncation = width * eigen.truncation
@@ -236,7 +236,6 @@ class Solver:
         """What the errors of a measured base flow do to the growth rate, None without such errors or without bars."""
         if not self.bars or self.flow.data is None:
             return None
-        from .response import data_error  # needs solvers itself
 
         return data_error(self, k, degree, eigen)
 

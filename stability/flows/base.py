@@ -1,7 +1,7 @@
 """What every flow is: a frozen dataclass of numbers with layers, conditions and a long-wave limit."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields
+from dataclasses import Field, dataclass, field, fields
 from math import inf, isfinite, isinf
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -9,7 +9,7 @@ from ..checks import LARGEST, as_number, check_options, in_double_precision, sho
 from ..errors import ParameterError
 from ..layer import Profile
 from . import sources
-from .contract import check_body, check_class, verify
+from .contract import check_body, verify
 
 _INSET, _AROUND = 1e-3, 100.0  # of a bounded range left out at its ends; factor about the default of an unbounded one
 
@@ -136,6 +136,29 @@ class Flow:
     def has_surface_mode(cls) -> bool:
         """Whether there is a slow surface mode to follow from k -> 0."""
         return cls.long_wave is not Flow.long_wave
+
+
+def check_class(cls: Any, asked: str | None = None) -> Any:
+    """Return the class, or raise a ParameterError where it is no class of flows or lacks something."""
+    label = f"{asked}: " if asked else ""
+    if not (isinstance(cls, type) and issubclass(cls, Flow)):
+        raise ParameterError(f"{label}{getattr(cls, '__name__', shown(cls))} is no flow: derive the class from "
+                             "stability.flows.Flow")
+    for name in ("layers", "conditions"):
+        if getattr(cls, name, None) is None:
+            raise ParameterError(f"{label}{cls.__name__} has no {name}: define {name}(self, "
+                                 f"{'edges, names' if name == 'conditions' else 'names'})")
+    if not isinstance(getattr(cls, "name", None), str | property):
+        raise ParameterError(f'{label}{cls.__name__} has no name: add name: ClassVar[str] = "{cls.__name__.lower()}"')
+    declared = {name for one in cls.__mro__ for name, value in vars(one).items() if isinstance(value, Field)}
+    known = {item.name for item in fields(cls)}
+    if declared - known or "__dataclass_fields__" not in vars(cls) and _own_parameters(cls):
+        raise ParameterError(f"{label}{cls.__name__}: write @dataclass(frozen=True) above the class")
+    return cls
+
+
+def _own_parameters(cls: type) -> list[str]:
+    return [name for name, kind in vars(cls).get("__annotations__", {}).items() if "ClassVar" not in str(kind)]
 
 
 def check_flow(flow):

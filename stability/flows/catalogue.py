@@ -53,7 +53,7 @@ def register(flow: "type[Flow]") -> "type[Flow]":
 
     Raises ParameterError where the class breaks its contract, or where the name belongs to another class.
     """
-    from .contract import check_class
+    from .base import check_class
 
     check_class(flow)
     if flow.name in FLOWS and FLOWS[flow.name] is not flow:
@@ -82,7 +82,7 @@ def find(name: str) -> "type[Flow]":
             raise ParameterError(f"unknown flow {name!r}{nearest(name, known)}; flows: {', '.join(known)}; "
                                  f"{_ELSEWHERE}")
         found = sources.from_module(offered[name], f"entry point {name}")
-    from .contract import check_class
+    from .base import check_class
 
     return check_class(found, name)
 

@@ -4,7 +4,7 @@ Whatever is given twice is compared: a slope with the series of what it is the s
 this package are checked by its tests, those from elsewhere whenever a solver is made for one of them.
 """
 
-from dataclasses import Field, fields
+from dataclasses import Field
 from functools import lru_cache
 from inspect import Parameter, signature
 from types import SimpleNamespace
@@ -65,10 +65,9 @@ def _check_declared(cls: type, name: str, value: Any) -> None:
         example = shown(value) if isinstance(value, int | float) else "1.0"
         raise ParameterError(f"{cls.__name__}.{name}: declare it as a parameter, {name}: float = parameter({example}, "
                              f'meaning="..."), or as a constant, {name}: ClassVar[...] = ...')
-    from .base import Flow
-
+    root = cls.__mro__[-2]  # of all flows
     reason = "an option of the command line" if name in OPTIONS else "a heading of results" if name in HEADINGS else \
-        "a symbol" if name in SYMBOLS | _symbols(cls) else "an attribute of flows" if hasattr(Flow, name) else None
+        "a symbol" if name in SYMBOLS | _symbols(cls) else "an attribute of flows" if hasattr(root, name) else None
     if reason and not sources.shipped(cls):
         raise ParameterError(f"{cls.__name__}.{name}: a parameter cannot be named {name}: that is {reason}")
 
@@ -106,33 +105,6 @@ def _check_arguments(cls: type, name: str, method: Any, count: int) -> None:
                              f"(got ({', '.join(one.name for one in given)}))")
 
 
-# -- the class, as it is asked for ------------------------------------------------------------------------------------
-
-def check_class(cls: Any, asked: str | None = None) -> Any:
-    """Return the class, or raise a ParameterError where it is no class of flows or lacks something."""
-    from .base import Flow
-
-    label = f"{asked}: " if asked else ""
-    if not (isinstance(cls, type) and issubclass(cls, Flow)):
-        raise ParameterError(f"{label}{getattr(cls, '__name__', shown(cls))} is no flow: derive the class from "
-                             "stability.flows.Flow")
-    for name in ("layers", "conditions"):
-        if getattr(cls, name, None) is None:
-            raise ParameterError(f"{label}{cls.__name__} has no {name}: define {name}(self, "
-                                 f"{'edges, names' if name == 'conditions' else 'names'})")
-    if not isinstance(getattr(cls, "name", None), str | property):
-        raise ParameterError(f'{label}{cls.__name__} has no name: add name: ClassVar[str] = "{cls.__name__.lower()}"')
-    declared = {name for one in cls.__mro__ for name, value in vars(one).items() if isinstance(value, Field)}
-    known = {item.name for item in fields(cls)}
-    if declared - known or "__dataclass_fields__" not in vars(cls) and _own_parameters(cls):
-        raise ParameterError(f"{label}{cls.__name__}: write @dataclass(frozen=True) above the class")
-    return cls
-
-
-def _own_parameters(cls: type) -> list[str]:
-    return [name for name, kind in vars(cls).get("__annotations__", {}).items() if "ClassVar" not in str(kind)]
-
-
 # -- the flow, with its base flow -------------------------------------------------------------------------------------
 
 def verify(flow: Any) -> None:
@@ -148,7 +120,6 @@ def verify(flow: Any) -> None:
 
 @lru_cache(maxsize=256)
 def _verified(flow: Any) -> None:
-    check_class(type(flow))
     names = SimpleNamespace(k=1.0, rate=0.0, **dict.fromkeys((*flow.functions, *flow.surfaces), 1.0))
     layers = flow.layers(names)
     if not isinstance(layers, tuple | list) or not layers or not all(isinstance(one, Layer) for one in layers):

@@ -17,7 +17,7 @@ _PACKAGE = __name__.partition(".")[0]
 _DIGITS = 16  # of a digest that are shown: two versions of a file never share them
 _MARK, _SEAL = "__flow_file__", "__flow_digest__"  # of a module that was imported from a file: its path, its digest
 
-_places: set[str] = set()  # names of the modules, none of this package, that define flows
+_classes: dict[tuple[str, str], None] = {}  # module and name of every class of flows that is none of this package
 
 
 def load(name: str) -> Any:
@@ -89,10 +89,7 @@ def _classes_in(place: str) -> str:
 
 
 def _listed(module: ModuleType) -> str:
-    from .base import Flow
-
-    found = [one.__name__ for one in vars(module).values()
-             if isinstance(one, type) and issubclass(one, Flow) and one.__module__ == module.__name__]
+    found = [name for place, name in _classes if place == module.__name__]
     return f"; its flows: {', '.join(found)}" if found else "; it has no flows"
 
 
@@ -122,7 +119,7 @@ def _is_ours(filename: str) -> bool:
 def note(cls: type) -> None:
     """Remember that the module of a class defines flows: `faults` puts the blame there."""
     if not shipped(cls):
-        _places.add(cls.__module__)
+        _classes[cls.__module__, cls.__qualname__] = None
 
 
 def shipped(cls: type) -> bool:
@@ -138,7 +135,7 @@ def faults() -> Iterator[None]:
     except StabilityError:
         raise
     except Exception as reason:
-        theirs = {_file(sys.modules.get(name)) for name in _places}
+        theirs = {_file(sys.modules.get(name)) for name, _ in _classes}
         for frame in reversed(extract_tb(reason.__traceback__)):
             if Path(frame.filename).resolve() in theirs:
                 raise ParameterError(f"{frame.filename}, line {frame.lineno} ({frame.name}): {_words(reason)}") \
