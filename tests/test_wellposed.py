@@ -8,7 +8,8 @@ import pytest
 from stability import NotResolved, dispersion, flows, k_max, spectrum
 from stability.cli import main
 from stability.relation import DispersionRelation
-from stability.rheology import Linear, well_posed_band
+from stability.flows import Linear
+from stability.rheology import well_posed_band
 from stability.wellposed import growth_with_degree, outgrown, well_posedness
 
 ILL = flows.Dune(shields=1.05, mu1=0.7, b=1.0, Re=10.0)

@@ -16,14 +16,17 @@ if TYPE_CHECKING:
     from .film import Film
     from .poiseuille import Poiseuille
     from .rollwave import RollWave
+    from .laws import Law, Linear, PowerLaw, Regularised, Saturating
     from .two_layer_couette import TwoLayerCouette
     from .vortex import Vortex
 
-__all__ = ["FLOWS", "Couette", "Dune", "Film", "Flow", "Layer", "Poiseuille", "Profile", "RollWave", "TwoLayerCouette",
+__all__ = ["FLOWS", "Couette", "Dune", "Film", "Flow", "Law", "Layer", "Linear", "Poiseuille", "PowerLaw", "Profile",
+           "Regularised", "RollWave", "Saturating", "TwoLayerCouette",
            "Vortex", "choice", "find", "parameter", "register"]
 
 _LATER = {
-    "Couette": ".couette", "Dune": ".dune", "Film": ".film", "Flow": ".base", "Layer": "..layer",
+    "Couette": ".couette", "Dune": ".dune", "Film": ".film", "Flow": ".base", "Law": ".laws",
+    "Layer": "..layer", "Linear": ".laws", "PowerLaw": ".laws", "Regularised": ".laws", "Saturating": ".laws",
     "Poiseuille": ".poiseuille", "Profile": "..layer", "RollWave": ".rollwave",
     "TwoLayerCouette": ".two_layer_couette", "Vortex": ".vortex", "choice": ".base", "parameter": ".base",
 }

@@ -80,6 +80,10 @@ class Flow:
         """
         return {"U": base.U, "dU": base.dU, "shear_stress": base.stress * base.eta * base.dU}
 
+    def stated(self) -> dict[str, Any]:
+        """Return what headers of results say of the parameters, {name: number or text}."""
+        return {item.name: getattr(self, item.name) for item in fields(self)}
+
     def remarks(self) -> list[str]:
         """Return what else there is to know of the base flow, a sentence each."""
         return []

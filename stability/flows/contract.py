@@ -20,7 +20,7 @@ from ..layer import Layer, Profile
 from . import sources
 
 OPTIONS = frozenset((  # of the command line, by their names there
-    "csv", "delta", "each", "flow", "form", "given", "help", "json", "k", "log", "long_wave", "max_degree", "method",
+    "csv", "delta", "each", "flow", "form", "given", "help", "json", "k", "law", "log", "long_wave", "max_degree", "method",
     "mode", "modes", "output", "over", "overlay", "parameters", "plot", "points", "quantity", "quiet", "range", "run",
     "search", "size", "style", "title", "tolerance", "vary", "version", "workers",
 ))
