@@ -7,8 +7,8 @@ import pytest
 
 from stability import NotResolved, dispersion, flows, k_max, spectrum
 from stability.cli import main
-from stability.relation import DispersionRelation
 from stability.flows import Linear
+from stability.relation import DispersionRelation
 from stability.rheology import well_posed_band
 from stability.wellposed import growth_with_degree, outgrown, well_posedness
 

@@ -14,9 +14,10 @@ if TYPE_CHECKING:
     from .couette import Couette
     from .dune import Dune
     from .film import Film
+    from .law import Law
+    from .laws import Linear, PowerLaw, Regularised, Saturating
     from .poiseuille import Poiseuille
     from .rollwave import RollWave
-    from .laws import Law, Linear, PowerLaw, Regularised, Saturating
     from .two_layer_couette import TwoLayerCouette
     from .vortex import Vortex
 
@@ -25,7 +26,7 @@ __all__ = ["FLOWS", "Couette", "Dune", "Film", "Flow", "Law", "Layer", "Linear",
            "Vortex", "choice", "find", "parameter", "register"]
 
 _LATER = {
-    "Couette": ".couette", "Dune": ".dune", "Film": ".film", "Flow": ".base", "Law": ".laws",
+    "Couette": ".couette", "Dune": ".dune", "Film": ".film", "Flow": ".base", "Law": ".law",
     "Layer": "..layer", "Linear": ".laws", "PowerLaw": ".laws", "Regularised": ".laws", "Saturating": ".laws",
     "Poiseuille": ".poiseuille", "Profile": "..layer", "RollWave": ".rollwave",
     "TwoLayerCouette": ".two_layer_couette", "Vortex": ".vortex", "choice": ".base", "parameter": ".base",

@@ -23,9 +23,10 @@ from numpy.polynomial import chebyshev as C
 from ..errors import ParameterError
 from ..layer import Layer, Profile
 from ..smooth import Rough, fit
-from .laws import Law
+from .law import Law
 
 _REST = 1e-8  # inertial number at which friction of a law with a yield stress is to rise linearly
+_NODES = 96  # of quadrature over a piece
 _LINEAR = 1e-3  # disagreement of its slope there with that at twice the number
 
 
@@ -93,13 +94,12 @@ def _shear_rate(law, tau, zeta):
 
 def _inertial(law, tau, piece, s):
     """zeta and I at the points s of a piece."""
-    zeta = piece.zeta - piece.span * s
     if law.start > 0:
-        depth = piece.depth + piece.span * s
-        excess = law.start * depth * (2 * zeta + depth) / zeta**2
-    else:
-        excess = tau / zeta**2
-    return zeta, law.beyond(excess)
+        zeta, depth = piece.zeta - piece.span * s, piece.depth + piece.span * s
+        return zeta, law.beyond(law.start * depth * (2 * zeta + depth) / zeta**2)
+    top, below = piece.zeta - piece.span, piece.span * (1 - s)
+    zeta = top + below
+    return zeta, law.fallen(top**2 / tau, below * (top + zeta) / tau)
 
 
 def _integrated(law, tau, piece):
@@ -111,8 +111,8 @@ def _integrated(law, tau, piece):
     try:
         found = fit(slope)
     except Rough as rough:
-        raise ParameterError(f"law {law.name}: the shear rate of the bed is not smooth near s = {rough.s:.4g}: friction "
-                             "must rise smoothly with I, linearly from rest; take another law") from None
+        raise ParameterError(f"law {law.name}: the shear rate of the bed is not smooth near s = {rough.s:.4g}: "
+                             "friction must rise smoothly with I, linearly from rest; take another law") from None
     series = C.chebint(found.series[0], lbnd=-1) / 2
     return Piece(piece.depth, piece.zeta, piece.span, piece.singular, piece.low, series, float(found.cut[0]))
 
@@ -137,7 +137,7 @@ def profile(law: Law, tau: float, piece: Piece, stress: float = 1.0) -> Callable
             alpha=tau / zeta**2 - inertial * slope / 2,
             g=shear_rate,
             dg=dg,
-            clear=slope / scale * zeta**4,
+            clear=slope / scale * zeta**4 if law.start > 0 else 1.0,
         )
 
     return at
@@ -161,12 +161,9 @@ def flux_slopes(law: Law, shields: float, creep: float) -> tuple[float, float]:
     tau, total = law.rest * shields, 0.0
     parts = pieces(law, shields, creep)
     for piece in parts:
-        def slope(s, piece=piece):
-            zeta, inertial = _inertial(law, tau, piece, s)
-            return np.asarray(2 * piece.span * (zeta**2 - 1) * law.rest / law.slope(inertial))[None]
-
-        series = C.chebint(fit(slope).series[0], lbnd=-1) / 2
-        total += float(C.chebval(1.0, series))
+        nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+        zeta, inertial = _inertial(law, tau, piece, (1 + nodes) / 2)
+        total += float(weights @ (piece.span * (zeta**2 - 1) * law.rest / law.slope(inertial)))
     bottom = parts[0].zeta
     over_floor = 0.0 if law.start > 0 else (bottom**2 - 1) * _shear_rate(law, tau, bottom)
     return total, over_floor
@@ -180,8 +177,8 @@ def check(law: Law, name: str, shields: float) -> None:
     low, high = law.range
     tau = law.rest * shields
     if not low < tau < high:
-        raise ParameterError(f"{name}: shields must lie in (1, {high / law.rest:.6g}): friction of law {law.name} cannot "
-                             f"exceed {high:g}, no steady flow beyond (got {shields:g})")
+        raise ParameterError(f"{name}: shields must lie in (1, {high / law.rest:.6g}): friction of law {law.name} "
+                             f"cannot exceed {high:g}, no steady flow beyond (got {shields:g})")
     if low > 0:
         slopes = [float(law.slope(one)) for one in (_REST, 2 * _REST)]
         if not (slopes[0] > 0 and abs(slopes[1] / slopes[0] - 1) < _LINEAR):

@@ -20,8 +20,8 @@ from ..layer import Layer, Profile
 from . import sources
 
 OPTIONS = frozenset((  # of the command line, by their names there
-    "csv", "delta", "each", "flow", "form", "given", "help", "json", "k", "law", "log", "long_wave", "max_degree", "method",
-    "mode", "modes", "output", "over", "overlay", "parameters", "plot", "points", "quantity", "quiet", "range", "run",
+    "csv", "delta", "each", "flow", "form", "given", "help", "json", "k", "law", "log", "long_wave", "max_degree",
+    "method", "mode", "modes", "output", "over", "overlay", "parameters", "plot", "points", "quantity", "quiet", "range", "run",
     "search", "size", "style", "title", "tolerance", "vary", "version", "workers",
 ))
 HEADINGS = frozenset((  # of results and their files

@@ -11,7 +11,8 @@ from ..layer import FIELDS, Layer, Profile
 from . import bed as beds
 from .base import choice, parameter
 from .granular import Granular
-from .laws import Law, Linear
+from .law import Law
+from .laws import Linear
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ class Dune(Granular):
     @classmethod
     def extras(cls, law: type[Law]):
         return {} if law.yields else {"creep": parameter(
-            1e-6, 1e-12, 0.5, look=(1e-8, 1e-2), reason="the floor must hold the bed, and rounding leaves it no more",
+            1e-6, 1e-9, 0.5, look=(1e-8, 1e-2), reason="the floor must hold the bed, and rounding leaves it no more",
             meaning="shear rate at the rigid floor of the bed over that at the interface; the law has no yield stress")}
 
     @property
@@ -72,7 +73,8 @@ class Dune(Granular):
 
     def layers(self, names):
         if self._linear:
-            bed = (Layer("bed", lambda s: bed_profile(s, self._excess, self.mu1, self.b), singular=1),)
+            bed: tuple[Layer, ...] = (
+                Layer("bed", lambda s: bed_profile(s, self._excess, self.mu1, self.b), singular=1),)
         else:
             bed = beds.layers(self.law, self.shields, self._creep)
         if self.fluid == "closed-form":

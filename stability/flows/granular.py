@@ -14,7 +14,8 @@ from ..errors import ParameterError, naming
 from . import sources
 from .base import Flow
 from .contract import OPTIONS
-from .laws import Law, Linear, check_law
+from .law import Law, check_law
+from .laws import Linear
 
 
 class _Scene(type):
@@ -112,7 +113,7 @@ class Granular(Flow, metaclass=_Scene):
         scene = vars(cls).get("scene", cls)
         if law is scene.friction and not scene.unit:
             return scene
-        return _under(scene, check_law(law, getattr(law, "name", "law")))
+        return _under(scene, check_law(law, getattr(law, "name", "law")))  # type: ignore[arg-type]
 
     @classmethod
     def extras(cls, law: type[Law]) -> dict[str, Any]:
@@ -144,7 +145,8 @@ def _under(scene, law):
 def _declared(usual: Any, item: Any) -> Any:
     """The parameter of a law, with the default that the scene has for it."""
     source: Field = usual or item
-    return field(default=source.default, metadata={**item.metadata, **({"look": usual.metadata["look"]} if usual else {})})
+    look = {"look": usual.metadata["look"]} if usual else {}
+    return field(default=source.default, metadata={**item.metadata, **look})
 
 
 def _revived(ticket, law, own):
