@@ -102,7 +102,7 @@ class Regularised:
         self.rest, self.mu2, self.I0, self.alpha, self.mu_inf = map(mp.mpf, (mu1, mu2, I0, alpha, mu_inf))
         self.yields = False
         low, high = mp.mpf(10) ** -9, None
-        for j in range(400):
+        for _ in range(400):
             high = low * mp.mpf("1.1")
             if self._C(high) <= 0:
                 break
@@ -205,7 +205,7 @@ def _bottom(law, tau, creep):
 
 
 def _coefficients(law, tau, pressure, slow, step):
-    """Series in Y, the height above the place where p = pressure over the step: g, and what the equations are made of."""
+    """Series in Y, the height over the step: g, and what the equations are made of."""
     terms = int(mp.mp.prec / -mp.log(_RATIO, 2)) + 12
     p = Series([pressure, -step] + [mp.mpf(0)] * (terms - 2))
     mu = p.power(-1) * tau

@@ -10,6 +10,7 @@ from .catalogue import FLOWS, find, register
 
 if TYPE_CHECKING:
     from ..layer import Layer, Profile
+    from .annulus import Annulus
     from .base import Flow, choice, parameter
     from .couette import Couette
     from .dune import Dune
@@ -18,14 +19,16 @@ if TYPE_CHECKING:
     from .laws import Linear, PowerLaw, Regularised, Saturating
     from .poiseuille import Poiseuille
     from .rollwave import RollWave
+    from .steady import Chute, Pile, PlaneShear, Plate
     from .two_layer_couette import TwoLayerCouette
     from .vortex import Vortex
 
-__all__ = ["FLOWS", "Couette", "Dune", "Film", "Flow", "Law", "Layer", "Linear", "Poiseuille", "PowerLaw", "Profile",
-           "Regularised", "RollWave", "Saturating", "TwoLayerCouette",
-           "Vortex", "choice", "find", "parameter", "register"]
+__all__ = ["FLOWS", "Annulus", "Chute", "Couette", "Dune", "Film", "Flow", "Law", "Layer", "Linear", "Pile",
+           "PlaneShear", "Plate", "Poiseuille", "PowerLaw", "Profile", "Regularised", "RollWave", "Saturating",
+           "TwoLayerCouette", "Vortex", "choice", "find", "parameter", "register"]
 
 _LATER = {
+    "Annulus": ".annulus", "Chute": ".steady", "Pile": ".steady", "PlaneShear": ".steady", "Plate": ".steady",
     "Couette": ".couette", "Dune": ".dune", "Film": ".film", "Flow": ".base", "Law": ".law",
     "Layer": "..layer", "Linear": ".laws", "PowerLaw": ".laws", "Regularised": ".laws", "Saturating": ".laws",
     "Poiseuille": ".poiseuille", "Profile": "..layer", "RollWave": ".rollwave",

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.polynomial import chebyshev as C
 
 from ..errors import ParameterError
-from ..layer import Layer, Profile
+from ..layer import FIELDS, Layer, Profile
 from ..smooth import Rough, fit
 from .law import Law
 
@@ -117,7 +117,7 @@ def _integrated(law, tau, piece):
     return Piece(piece.depth, piece.zeta, piece.span, piece.singular, piece.low, series, float(found.cut[0]))
 
 
-def profile(law: Law, tau: float, piece: Piece, stress: float = 1.0) -> Callable[[Any], Profile]:
+def profile(law: Law, tau: float, piece: Piece, inertia: float = 1.0) -> Callable[[Any], Profile]:
     """Return the base state of a piece as a function of s."""
     scale = float(law.slope(_inertial(law, tau, piece, np.array([1.0]))[1])[0])
 
@@ -130,6 +130,7 @@ def profile(law: Law, tau: float, piece: Piece, stress: float = 1.0) -> Callable
             eta = tau / shear_rate
         return Profile(
             dz=2 * piece.span * zeta,
+            rho=inertia,
             U=piece.low + C.chebval(2 * s - 1, piece.series),
             dU=shear_rate,
             eta=eta,
@@ -143,12 +144,24 @@ def profile(law: Law, tau: float, piece: Piece, stress: float = 1.0) -> Callable
     return at
 
 
-def layers(law: Law, shields: float, creep: float) -> tuple[Layer, ...]:
+def layers(law: Law, shields: float, creep: float, inertia: float = 1.0) -> tuple[Layer, ...]:
     """The layers of the bed from below; the uppermost is called bed, those below it bed_2, bed_3 ..."""
     tau, parts = law.rest * shields, pieces(law, shields, creep)
     names = [f"bed_{number}" for number in range(len(parts), 1, -1)] + ["bed"]
-    return tuple(Layer(name, profile(law, tau, piece), singular=int(piece.singular))
+    return tuple(Layer(name, profile(law, tau, piece, inertia), singular=int(piece.singular))
                  for name, piece in zip(names, parts, strict=True))
+
+
+def below(edges: Any, count: int, yields: bool) -> tuple:
+    """Conditions below the top of a bed of `count` pieces: no flow at the yield surface, no slip on a floor.
+
+    All is continuous where the slope of the law jumps: stresses and shear rate of the base flow are.
+    """
+    parts = [getattr(edges, "bed" if not number else f"bed_{number + 1}") for number in range(count)]
+    bottom = parts[-1][0]
+    joints = [getattr(above[0], name) - getattr(below[1], name)
+              for above, below in zip(parts, parts[1:], strict=False) for name in FIELDS]
+    return (*([] if yields else [bottom.v]), bottom.w, *joints)
 
 
 def flux_slopes(law: Law, shields: float, creep: float) -> tuple[float, float]:

@@ -21,8 +21,8 @@ from . import sources
 
 OPTIONS = frozenset((  # of the command line, by their names there
     "csv", "delta", "each", "flow", "form", "given", "help", "json", "k", "law", "log", "long_wave", "max_degree",
-    "method", "mode", "modes", "output", "over", "overlay", "parameters", "plot", "points", "quantity", "quiet", "range",
-    "run", "search", "size", "style", "title", "tolerance", "vary", "version", "workers",
+    "method", "mode", "modes", "output", "over", "overlay", "parameters", "plot", "points", "quantity", "quiet",
+    "range", "run", "search", "size", "style", "title", "tolerance", "vary", "version", "workers",
 ))
 HEADINGS = frozenset((  # of results and their files
     "flow", "parameters", "method", "version", "notes", "rows", "source", "digest", "mode", "title", "scales",

@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from .. import wavy_wall
-from ..layer import FIELDS, Layer, Profile
+from ..layer import Layer, Profile
 from . import bed as beds
 from .base import choice, parameter
 from .granular import Granular
@@ -101,11 +101,7 @@ class Dune(Granular):
         """No flow at the yield surface, no slip on a floor; all is continuous where the slope of the law jumps."""
         if self._linear:
             return (edges.bed[0].w,)
-        parts = [getattr(edges, "bed" if not number else f"bed_{number + 1}") for number in range(len(self._pieces))]
-        bottom = parts[-1][0]
-        joints = [getattr(above[0], field) - getattr(below[1], field)
-                  for above, below in zip(parts, parts[1:], strict=False) for field in FIELDS]
-        return (*([] if self.law.yields else [bottom.v]), bottom.w, *joints)
+        return beds.below(edges, len(self._pieces), self.law.yields)
 
     def _far(self, top, k):
         """No slip on a lid; irrotational decay exp(-k z) above the vorticity of an unbounded fluid."""
