@@ -201,3 +201,12 @@ def test_laws_on_the_command_line(capsys, tmp_path):
 def test_vortices_take_no_law():
     with pytest.raises(TypeError):
         flows.Vortex(law=Saturating())
+
+
+def test_numbers_of_another_law_are_not_checked_against_the_expansion(capsys, tmp_path):
+    from asymptotics.cli import main as check
+
+    file = tmp_path / "power.csv"
+    assert main(["dispersion", "dune", "--law", "power", "--k", "1e-5:1e-3:5", "-o", str(file)]) == 0
+    assert check(["check", "dune", str(file)]) == 2
+    assert "holds friction law power" in capsys.readouterr().err

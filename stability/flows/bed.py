@@ -112,7 +112,8 @@ def _integrated(law, tau, piece):
         found = fit(slope)
     except Rough as rough:
         raise ParameterError(f"law {law.name}: the shear rate of the bed is not smooth near s = {rough.s:.4g}: "
-                             "friction must rise smoothly with I, linearly from rest; take another law") from None
+                             "friction must rise smoothly with I, linearly from rest, and the stress stay clear of its "
+                             "largest value") from None
     series = C.chebint(found.series[0], lbnd=-1) / 2
     return Piece(piece.depth, piece.zeta, piece.span, piece.singular, piece.low, series, float(found.cut[0]))
 

@@ -46,7 +46,8 @@ def sheared_layers(law: Law, parts: list[tuple[str, Callable[[Any], Sheared]]], 
             one = fit(lambda s, state=state: np.asarray(state(s).shear_rate * state(s).dz)[None])
         except Rough as rough:
             raise ParameterError(f"layer {name}: the shear rate under law {law.name} is not smooth near "
-                                 f"s = {rough.s:.4g}: friction must rise smoothly with I, linearly from rest") from None
+                                 f"s = {rough.s:.4g}: friction must rise smoothly with I, linearly from rest, and "
+                                 "the stress stay clear of its largest value") from None
         series = C.chebint(one.series[0], lbnd=-1) / 2
         found.append(Layer(name, _profile(law, state, series, low, inertia)))
         low += float(C.chebval(1.0, series))
