@@ -2,7 +2,7 @@
 
 Shields ratios 1.2 and 1.5, mu1 = 0.4: linear with b = 1; saturating with mu2 = 0.8, I0 = 1, which has the same slope
 mu1 b at I = 0; the regularised law with the same numbers, whose upper branch is that law (and mu_inf = 0.05).
-Wavenumber of the fastest surface mode and its growth rate. Run time: about 60 s on one core, 10 s with --fast.
+Wavenumber of the fastest surface mode and its growth rate. Run time: about 25 s on one core, 8 s with --fast.
 """
 
 import numpy as np
