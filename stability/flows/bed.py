@@ -92,12 +92,28 @@ def _shear_rate(law, tau, zeta):
     return float(law.beyond(tau / zeta**2)) * zeta
 
 
+def _map(law, tau, piece, s):
+    """Depth below the lower edge of a piece in zeta, and its slope in s.
+
+    Friction that has a largest value mu2 sends I to infinity at zeta = a, a^2 = tau/mu2, just above the bed maybe:
+    zeta - a falls exponentially, so that the pole becomes an entire function of s.
+    """
+    top = law.range[1]
+    if not np.isfinite(top):
+        return piece.span * s, piece.span + 0 * s
+    gap = piece.zeta - np.sqrt(tau / top)
+    rate = np.log1p(-piece.span / gap)
+    return -gap * np.expm1(rate * s), -gap * rate * np.exp(rate * s)
+
+
 def _inertial(law, tau, piece, s):
     """zeta and I at the points s of a piece."""
     if law.start > 0:
-        zeta, depth = piece.zeta - piece.span * s, piece.depth + piece.span * s
+        fall = _map(law, tau, piece, s)[0]
+        zeta, depth = piece.zeta - fall, piece.depth + fall
         return zeta, law.beyond(law.start * depth * (2 * zeta + depth) / zeta**2)
-    top, below = piece.zeta - piece.span, piece.span * (1 - s)
+    top = piece.zeta - piece.span
+    below = piece.span - _map(law, tau, piece, s)[0]
     zeta = top + below
     return zeta, law.fallen(top**2 / tau, below * (top + zeta) / tau)
 
@@ -106,7 +122,7 @@ def _integrated(law, tau, piece):
     """The piece with its velocity: the antiderivative of the series of dU/ds = I zeta dz/ds."""
     def slope(s):
         zeta, inertial = _inertial(law, tau, piece, s)
-        return np.asarray(2 * piece.span * zeta**2 * inertial)[None]
+        return np.asarray(2 * _map(law, tau, piece, s)[1] * zeta**2 * inertial)[None]
 
     try:
         found = fit(slope)
@@ -124,13 +140,14 @@ def profile(law: Law, tau: float, piece: Piece, inertia: float = 1.0) -> Callabl
 
     def at(s):
         zeta, inertial = _inertial(law, tau, piece, s)
+        stretch = _map(law, tau, piece, s)[1]
         with np.errstate(divide="ignore", invalid="ignore"):
             slope = law.slope(inertial)
             shear_rate = inertial * zeta
-            dg = piece.span * (2 * tau / (zeta**2 * slope) - inertial)
+            dg = stretch * (2 * tau / (zeta**2 * slope) - inertial)
             eta = tau / shear_rate
         return Profile(
-            dz=2 * piece.span * zeta,
+            dz=2 * stretch * zeta,
             rho=inertia,
             U=piece.low + C.chebval(2 * s - 1, piece.series),
             dU=shear_rate,
@@ -177,7 +194,8 @@ def flux_slopes(law: Law, shields: float, creep: float) -> tuple[float, float]:
     for piece in parts:
         nodes, weights = np.polynomial.legendre.leggauss(_NODES)
         zeta, inertial = _inertial(law, tau, piece, (1 + nodes) / 2)
-        total += float(weights @ (piece.span * (zeta**2 - 1) * law.rest / law.slope(inertial)))
+        stretch = _map(law, tau, piece, (1 + nodes) / 2)[1]
+        total += float(weights @ (stretch * (zeta**2 - 1) * law.rest / law.slope(inertial)))
     bottom = parts[0].zeta
     over_floor = 0.0 if law.start > 0 else (bottom**2 - 1) * _shear_rate(law, tau, bottom)
     return total, over_floor
