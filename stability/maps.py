@@ -148,7 +148,7 @@ class Request:
         """All that the results depend on, as plain values."""
         from . import __version__
 
-        fixed = {name: value for name, value in self.flow.described().items() if name not in self.over}
+        fixed = {name: value for name, value in self.flow.stated().items() if name not in self.over}
         return {"version": __version__, "flow": self.flow.name, **origin(type(self.flow)), "parameters": fixed,
                 "over": [[name, list(values)] for name, values in self.over.items()], "quantity": self.quantity,
                 "k": self.k and list(self.k), "vary": self.vary, "tolerance": self.tolerance,

@@ -33,7 +33,7 @@ _PREFIX = 100  # bytes of a file's name that its temporary file shows
 def header_of(flow: Any, method: str, about: dict[str, Any], notes: Sequence[str] = (),
               swept: Collection[str | None] = ()) -> dict[str, Any]:
     """What belongs to a whole result: flow, parameters but the swept ones, method, version, `about`, notes if any."""
-    parameters = {name: value for name, value in flow.described().items() if name not in swept}
+    parameters = {name: value for name, value in flow.stated().items() if name not in swept}
     header = {"flow": flow.name, "parameters": parameters, "method": method, "version": __version__,
               **origin(type(flow)), **about}
     return {**header, "notes": list(notes)} if notes else header

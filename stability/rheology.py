@@ -1,4 +1,4 @@
-"""Friction laws mu(I) and the condition for their equations of motion to be well posed.
+"""The condition for the equations of motion of a friction law mu(I) to be well posed. Laws: `stability.flows.laws`.
 
 With r = I mu'/mu and tau = mu(I) p, I ~ (shear rate)/sqrt(p), the viscosities of `stability.layer` are
 
@@ -18,79 +18,17 @@ Above r = 1/2 (rapid flow by the linear law) the root lies beyond s = 1, and C >
 alpha > 1 makes the denominator vanish first.
 """
 
-from dataclasses import dataclass
 from math import inf
 
 import numpy as np
 
-from .errors import ParameterError
-
 _ANGLES = np.linspace(-1, 1, 401)  # s = sin 2a, odd number: includes 0
-
-
-@dataclass(frozen=True)
-class Saturating:
-    """mu = mu1 + (mu2 - mu1) I / (I0 + I): thesis (1.11), Jop, Forterre & Pouliquen (2005)."""
-
-    mu1: float
-    mu2: float
-    I0: float
-
-    def __post_init__(self):
-        if not 0 < self.mu1 < self.mu2 < inf:
-            raise ParameterError(f"mu1 and mu2 must obey 0 < mu1 < mu2 (got {self.mu1:g}, {self.mu2:g})")
-        _positive("I0", self.I0)
-
-    @property
-    def range(self):
-        """Open interval of mu for 0 < I < inf."""
-        return self.mu1, self.mu2
-
-    def friction(self, I):  # noqa: E741
-        return self.mu1 + (self.mu2 - self.mu1) * I / (self.I0 + I)
-
-    def slope(self, I):  # noqa: E741
-        """d mu / d I."""
-        return (self.mu2 - self.mu1) * self.I0 / (self.I0 + I) ** 2
-
-    def inverse(self, mu):
-        """The inertia number at which friction is mu."""
-        _within(mu, self.range)
-        return self.I0 * (mu - self.mu1) / (self.mu2 - mu)
-
-
-@dataclass(frozen=True)
-class Linear:
-    """mu = mu1 (1 + b I): thesis (4.48)."""
-
-    mu1: float
-    b: float
-
-    def __post_init__(self):
-        _positive("mu1", self.mu1)
-        _positive("b", self.b)
-
-    @property
-    def range(self):
-        """Open interval of mu for 0 < I < inf."""
-        return self.mu1, inf
-
-    def friction(self, I):  # noqa: E741
-        return self.mu1 * (1 + self.b * I)
-
-    def slope(self, I):  # noqa: E741
-        """d mu / d I."""
-        return self.mu1 * self.b + 0 * I
-
-    def inverse(self, mu):
-        """The inertia number at which friction is mu."""
-        _within(mu, self.range)
-        return (mu / self.mu1 - 1) / self.b
 
 
 def condition(r, alpha):
     """C from r = beta/eta = I mu'/mu and alpha = mu (1 - r/2); ill posed where positive.
 
+    >>> from stability.flows.laws import Saturating
     >>> law = Saturating(mu1=0.4, mu2=0.6, I0=0.3)
     >>> bool(law_condition(law, 0.1) < 0 < law_condition(law, 1e-3))
     True
@@ -107,7 +45,7 @@ def ill_posed(r, alpha):
 
 def law_condition(law, I):  # noqa: E741
     """C of a friction law at the inertia number I, a number or an array."""
-    mu = law.friction(I)
+    mu = law.mu(I)
     r = I * law.slope(I) / mu
     return condition(r, mu * (1 - r / 2))
 
@@ -116,6 +54,7 @@ def well_posed_band(law, low=1e-6, high=1e6):
     """Interval of I on which C <= 0, as (start, stop); None if C > 0 for all low < I < high.
 
     >>> from math import radians, tan
+    >>> from stability.flows.laws import Saturating
     >>> start, stop = well_posed_band(Saturating(tan(radians(20.9)), tan(radians(32.76)), 0.279))
     >>> f"{start:.10f} {stop:.10f}"
     '0.0193500919 0.8522658149'
@@ -151,14 +90,3 @@ def _root(law, low, high):
             break
         low, high = (low, middle) if (law_condition(law, middle) > 0) == rising else (middle, high)
     return float(middle)
-
-
-def _positive(name, value):
-    if not 0 < value < inf:
-        raise ParameterError(f"{name} must be positive and finite (got {value:g})")
-
-
-def _within(mu, allowed):
-    if not np.all((np.asarray(mu) > allowed[0]) & (np.asarray(mu) < allowed[1])):
-        raise ParameterError(f"mu must lie in ({allowed[0]:g}, {allowed[1]:g}), the range of the law: "
-                             f"no steady flow elsewhere (got {mu})")

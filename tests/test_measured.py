@@ -191,11 +191,11 @@ def test_maps_and_their_journals(capsys, tmp_path):
     found = json.loads((tmp_path / "map.json").read_text())
     assert all(row["data_error"] > 0 for row in found["rows"])
     flow = flows.Shear(path)
-    first = flow.described()
+    first = flow.stated()
     written(tmp_path / "table.csv", z, 1.001 - z**2)
-    assert flows.Shear(path).described() != first
+    assert flows.Shear(path).stated() != first
     assert flows.Shear(path) != flow
-    assert flow.described() == first  # read once
+    assert flow.stated() == first  # read once
     capsys.readouterr()
 
 

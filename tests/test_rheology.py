@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from stability.errors import ParameterError
+from stability.flows import Linear, Saturating
 from stability.rheology import (
-    Linear,
-    Saturating,
     condition,
     ill_posed,
     law_condition,
@@ -23,16 +22,16 @@ LAWS = (BEADS, Linear(mu1=0.4, b=1.3))
 @pytest.mark.parametrize("law", LAWS)
 def test_inverse_undoes_friction_and_slope_is_its_derivative(law):
     inertia = np.geomspace(1e-3, 10, 9)
-    np.testing.assert_allclose(law.inverse(law.friction(inertia)), inertia, rtol=1e-12)
+    np.testing.assert_allclose(law.inverse(law.mu(inertia)), inertia, rtol=1e-12)
     step = 1e-4 * inertia
-    difference = (law.friction(inertia + step) - law.friction(inertia - step)) / (2 * step)
+    difference = (law.mu(inertia + step) - law.mu(inertia - step)) / (2 * step)
     np.testing.assert_allclose(law.slope(inertia), difference, rtol=1e-7)
 
 
 @pytest.mark.parametrize("law", LAWS)
 def test_friction_stays_in_its_range(law):
     low, high = law.range
-    assert low < law.friction(1e-9) < law.friction(1e9) < high
+    assert low < law.mu(1e-9) < law.mu(1e9) < high
     with pytest.raises(ParameterError, match="no steady flow"):
         law.inverse(low)
 
@@ -49,7 +48,7 @@ def test_band_of_glass_beads_is_the_published_one():
     low, high = well_posed_band(BEADS)
     assert low == pytest.approx(0.0193500918873711, rel=1e-12)
     assert high == pytest.approx(0.852265814865770, rel=1e-12)
-    slopes = [degrees(atan(BEADS.friction(value))) for value in (low, high)]
+    slopes = [degrees(atan(BEADS.mu(value))) for value in (low, high)]
     np.testing.assert_allclose(slopes, [21.7435874, 30.0686769], atol=5e-8)
 
 
@@ -80,7 +79,7 @@ def test_short_waves_grow_exactly_where_ill_posed():
 
 def test_saturating_law_is_ill_posed_exactly_where_its_condition_is_positive():
     inertia = np.geomspace(1e-4, 1e3, 500)
-    mu = BEADS.friction(inertia)
+    mu = BEADS.mu(inertia)
     r = inertia * BEADS.slope(inertia) / mu
     np.testing.assert_array_equal(ill_posed(r, mu * (1 - r / 2)), law_condition(BEADS, inertia) > 0)
 

@@ -201,7 +201,7 @@ def test_it_is_a_value():
 
 
 def test_functions_are_told_apart_by_their_values():
-    texts = {flows.Shear(one, **OPEN).described()["profile"] for one in (jet, lambda z: jet(z), lambda z: 2 * jet(z))}
+    texts = {flows.Shear(one, **OPEN).stated()["profile"] for one in (jet, lambda z: jet(z), lambda z: 2 * jet(z))}
     assert len({text.partition("(")[2] for text in texts}) == 2
 
 

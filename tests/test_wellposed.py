@@ -7,9 +7,10 @@ import pytest
 
 from stability import NotResolved, dispersion, flows, k_max, spectrum
 from stability.cli import main
+from stability.flows import Linear
 from stability.outgrown import outgrown
 from stability.relation import DispersionRelation
-from stability.rheology import Linear, well_posed_band
+from stability.rheology import well_posed_band
 from stability.short_waves import well_posedness
 from stability.wellposed import growth_with_degree
 

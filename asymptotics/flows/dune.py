@@ -20,6 +20,8 @@ from . import Regime
 
 SUMMARY = "dunes: a granular bed under a sheared fluid"
 
+LAW = "linear"  # the friction law, as files of results name it
+
 PARAMETERS = (
     Parameter("shields", "applied stress over yield stress", sp.Integer(1),
               remedy="below 1 the bed does not yield; give a value above 1"),

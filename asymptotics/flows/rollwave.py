@@ -18,6 +18,8 @@ from .vortex import Fr2, friction, mu1, mu2, tan_slope
 
 SUMMARY = "roll waves in granular flow down an inclined plane (waves along the flow)"
 
+LAW = "saturating"  # the friction law, as files of results name it
+
 PARAMETERS = (
     Parameter("slope_deg", "inclination of the plane in degrees", sp.Integer(0), sp.Integer(90),
               remedy="a plane that carries a flow slopes by more than 0 and less than 90 degrees"),

@@ -10,22 +10,28 @@ from .catalogue import FLOWS, find, register
 
 if TYPE_CHECKING:
     from ..layer import Layer, Profile
+    from .annulus import Annulus
     from .base import Flow, choice, parameter
     from .couette import Couette
     from .dune import Dune
     from .film import Film
+    from .law import Law
+    from .laws import Linear, PowerLaw, Regularised, Saturating
     from .poiseuille import Poiseuille
     from .rollwave import RollWave
     from .shear import Shear
+    from .steady import Chute, Pile, PlaneShear, Plate
     from .two_layer_couette import TwoLayerCouette
     from .vortex import Vortex
 
-__all__ = ["FLOWS", "Couette", "Dune", "Film", "Flow", "Layer", "Poiseuille", "Profile", "RollWave", "Shear",
-           "TwoLayerCouette",
-           "Vortex", "choice", "find", "parameter", "register"]
+__all__ = ["FLOWS", "Annulus", "Chute", "Couette", "Dune", "Film", "Flow", "Law", "Layer", "Linear", "Pile",
+           "PlaneShear", "Plate", "Poiseuille", "PowerLaw", "Profile", "Regularised", "RollWave", "Saturating", "Shear",
+           "TwoLayerCouette", "Vortex", "choice", "find", "parameter", "register"]
 
 _LATER = {
-    "Couette": ".couette", "Dune": ".dune", "Film": ".film", "Flow": ".base", "Layer": "..layer",
+    "Annulus": ".annulus", "Chute": ".steady", "Pile": ".steady", "PlaneShear": ".steady", "Plate": ".steady",
+    "Couette": ".couette", "Dune": ".dune", "Film": ".film", "Flow": ".base", "Law": ".law",
+    "Layer": "..layer", "Linear": ".laws", "PowerLaw": ".laws", "Regularised": ".laws", "Saturating": ".laws",
     "Poiseuille": ".poiseuille", "Profile": "..layer", "RollWave": ".rollwave", "Shear": ".shear",
     "TwoLayerCouette": ".two_layer_couette", "Vortex": ".vortex", "choice": ".base", "parameter": ".base",
 }

@@ -100,6 +100,10 @@ class Flow:
         """
         return {"U": base.U, "dU": base.dU, "shear_stress": base.stress * base.eta * base.dU}
 
+    def stated(self) -> dict[str, Any]:
+        """Return the parameters as numbers and texts that tell this flow from all others: what headers of results say."""
+        return {item.name: getattr(self, item.name) for item in fields(self)}
+
     def remarks(self) -> list[str]:
         """Return what else there is to know of the base flow, a sentence each."""
         return []
@@ -112,10 +116,6 @@ class Flow:
     def lowest(self) -> float:
         """z of the lowest edge of its layers."""
         return self.bottom
-
-    def described(self) -> dict[str, Any]:
-        """Return the parameters as numbers and texts that tell this flow from all others."""
-        return {item.name: getattr(self, item.name) for item in fields(self)}
 
     def left_out(self, edges: Any, names: Any, k: float, sigma: complex) -> dict[int, Any]:
         """Return {index of a condition: what it lacks} where a fluid is cut, at growth rate sigma."""

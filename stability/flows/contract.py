@@ -20,10 +20,9 @@ from ..layer import Layer, Profile
 from . import sources
 
 OPTIONS = frozenset((  # of the command line, by their names there
-    "csv", "delta", "each", "flow", "form", "given", "help", "json", "k", "log", "long_wave", "max_degree", "method",
-    "mode", "modes", "output", "over", "overlay", "panel", "parameters", "plot", "points", "port", "quantity", "quiet",
-    "range", "run",
-    "search", "size", "style", "title", "tolerance", "vary", "version", "web", "workers",
+    "csv", "delta", "each", "flow", "form", "given", "help", "json", "k", "law", "log", "long_wave", "max_degree",
+    "method", "mode", "modes", "output", "over", "overlay", "panel", "parameters", "plot", "points", "port", "quantity",
+    "quiet", "range", "run", "search", "size", "style", "title", "tolerance", "vary", "version", "web", "workers",
 ))
 HEADINGS = frozenset((  # of results and their files
     "flow", "parameters", "method", "version", "notes", "rows", "source", "digest", "mode", "title", "scales",

@@ -8,16 +8,23 @@ import numpy as np
 
 from .. import wavy_wall
 from ..layer import Layer, Profile
-from .base import Flow, choice, parameter
+from . import bed as beds
+from .base import choice, parameter
+from .granular import Granular
+from .law import Law
+from .laws import Linear
 
 
 @dataclass(frozen=True)
-class Dune(Flow):
+class Dune(Granular):
     """Perturbations exp(i k x + sigma t) of a granular bed under a fluid in linear shear.
 
     The bed (4.64)-(4.70) flows between its yield surface z = 1 - shields and the interface z = 0. The
     fluid (4.59)-(4.63) adjusts at once to the shape of the bed, as over a rigid wall. It enters by the
     closed form of its wall stress, or (`fluid="layer"`) as a second layer of the same eigenproblem.
+
+    Any friction law may take the place of (4.48): `law=Saturating(...)`, see `stability.flows.laws`. Where it has no
+    yield stress, a rigid floor holds the creeping bed.
     """
 
     name: ClassVar[str] = "dune"
@@ -37,6 +44,17 @@ class Dune(Flow):
                              meaning="fluid depth in grain diameters; inf: unbounded fluid", unbounded=True)
     fluid: str = choice("closed-form", "layer", meaning="wall stress in closed form, or a second layer")
 
+    def __post_init__(self):
+        super().__post_init__()
+        if not self._linear:
+            beds.check(self.law, self.name, self.shields)
+
+    @classmethod
+    def extras(cls, law: type[Law]):
+        return {} if law.yields else {"creep": parameter(
+            1e-6, 1e-9, 0.5, look=(1e-8, 1e-2), reason="the floor must hold the bed, and rounding leaves it no more",
+            meaning="shear rate at the rigid floor of the bed over that at the interface; the law has no yield stress")}
+
     @property
     def functions(self):  # type: ignore[override]
         if self.fluid == "closed-form":
@@ -45,7 +63,7 @@ class Dune(Flow):
 
     @property
     def bottom(self):  # type: ignore[override]
-        return 1 - self.shields
+        return 1 - self.shields if self.law.yields else 1 - self._pieces[0].zeta ** 2
 
     def evaluate(self, k):
         if self.fluid == "closed-form":
@@ -54,27 +72,36 @@ class Dune(Flow):
         return {"H": _vorticity_depth(k, self.Re)} if isinf(self.depth) else {}
 
     def layers(self, names):
-        bed = Layer("bed", lambda s: bed_profile(s, self._excess, self.mu1, self.b), singular=1)
+        if self._linear:
+            bed: tuple[Layer, ...] = (
+                Layer("bed", lambda s: bed_profile(s, self._excess, self.mu1, self.b), singular=1),)
+        else:
+            bed = beds.layers(self.law, self.shields, self._creep)
         if self.fluid == "closed-form":
-            return (bed,)
+            return bed
         height = names.H if isinf(self.depth) else self.depth
-        return bed, Layer("fluid", lambda s: fluid_profile(s, height, self.Re), steady=True)
+        return *bed, Layer("fluid", lambda s: fluid_profile(s, height, self.Re), steady=True)
 
     def conditions(self, edges, names):
         """No flow below the yield surface; pressure of a monolayer and fluid stress on the moving interface."""
         k, s0 = names.k, names.s0
-        yielding, surface = edges.bed
-        normal_strain = 2 * k * self.mu1 * self.shields * surface.v  # p + n: 2 eta times the strain rate
+        surface, stress = edges.bed[1], self._stress
+        normal_strain = 2 * k * stress * surface.v  # p + n: 2 eta times the strain rate
         bed = (
-            yielding.w,
+            *self._below(edges),
             normal_strain - surface.n - s0,
             (names.rate + 1j * self._surface_speed) * s0 - surface.w,
         )
-        stress = self.mu1 * self.shields
         if self.fluid == "closed-form":
             return (*bed, surface.t - 1j * stress * names.R * s0)
         wall, top = edges.fluid
         return (*bed, surface.t - stress * wall.t, wall.v - 1j * s0, wall.w, *self._far(top, k))
+
+    def _below(self, edges):
+        """No flow at the yield surface, no slip on a floor; all is continuous where the slope of the law jumps."""
+        if self._linear:
+            return (edges.bed[0].w,)
+        return beds.below(edges, len(self._pieces), self.law.yields)
 
     def _far(self, top, k):
         """No slip on a lid; irrotational decay exp(-k z) above the vorticity of an unbounded fluid."""
@@ -83,8 +110,15 @@ class Dune(Flow):
         return top.v, top.w
 
     def long_wave(self, k):
-        """sigma = i k (2 shields / 3 b) (r - 1)^2 (r + 2) R, r = sqrt(shields): thesis (4.81), (4.84) for any R."""
+        """sigma = i k (2 shields / 3 b) (r - 1)^2 (r + 2) R, r = sqrt(shields): thesis (4.81), (4.84) for any R.
+
+        Under any law sigma = i k shields dQ/d(shields) R: the bed adapts at once to the stress shields (1 - R s0), and
+        its flux Q to its bed; over a floor it flows faster where it is higher, too.
+        """
         response = wavy_wall.response(k, self.Re, self.depth).value
+        if not self._linear:
+            slope, over_floor = beds.flux_slopes(self.law, self.shields, self._creep)
+            return 1j * k * (self.shields * slope * response - over_floor)
         return 2j * k * self.shields / (3 * self.b) * self._excess**2 * (self._excess + 3) * response
 
     def state(self, layer, z, base):
@@ -92,12 +126,32 @@ class Dune(Flow):
         if layer == "fluid":
             return super().state(layer, z, base)
         pressure = 1 - z
-        return {**super().state(layer, z, base), "shear_stress": self.mu1 * self.shields, "pressure": pressure,
-                "inertial_number": np.maximum(self.shields / pressure - 1, 0) / self.b}
+        inertial = np.maximum(self.shields / pressure - 1, 0) / self.b if self._linear else base.dU / np.sqrt(pressure)
+        return {**super().state(layer, z, base), "shear_stress": self._stress, "pressure": pressure,
+                "inertial_number": inertial}
 
     def remarks(self):
-        return [f"yield surface at z = {1 - self.shields:.10g}: no flow below",
+        bottom = f"yield surface at z = {self.bottom:.10g}: no flow below" if self.law.yields else \
+            f"no yield stress: rigid floor at z = {self.bottom:.10g}"
+        return [bottom,
                 f"interface at z = 0, velocity {self._surface_speed:.10g}"]
+
+    @property
+    def _linear(self):
+        return self.friction is Linear
+
+    @property
+    def _stress(self):
+        """Shear stress on the bed, in units of the pressure on it."""
+        return self.mu1 * self.shields if self._linear else self.law.rest * self.shields
+
+    @property
+    def _creep(self):
+        return getattr(self, "creep", 0.0)
+
+    @property
+    def _pieces(self):
+        return beds.pieces(self.law, self.shields, self._creep)
 
     @property
     def _excess(self):
@@ -106,6 +160,8 @@ class Dune(Flow):
 
     @property
     def _surface_speed(self):
+        if not self._linear:
+            return self._pieces[-1].top
         return 2 * self._excess**2 * (2 * self._excess + 3) / (3 * self.b)
 
 

@@ -8,17 +8,22 @@ from typing import ClassVar
 from ..angles import tan_deg
 from ..errors import ParameterError
 from ..layer import Layer, Profile
-from .base import Flow, parameter
+from .base import parameter
+from .granular import Granular
+from .laws import Saturating
 
 
 @dataclass(frozen=True)
-class RollWave(Flow):
+class RollWave(Granular):
     """Down-slope perturbations exp(i k x + sigma t) of mu(I) flow, mu = (mu1 I0 + mu2 I)/(I0 + I), on a rough plane.
 
     The base flow is U = (2/3)(1 - (1-z)^{3/2}); the friction law enters through mu = tan(slope) and
-    e0 = I mu'(I) = (mu2 - mu)(mu - mu1)/(mu2 - mu1), thesis (4.16).
+    e0 = I mu'(I) = (mu2 - mu)(mu - mu1)/(mu2 - mu1), thesis (4.16). Any friction law may take its place,
+    `law=Regularised(...)`: the inertial number is uniform.
     """
 
+    friction = Saturating
+    unit: ClassVar[dict[str, float]] = {"I0": 1.0}
     name: ClassVar[str] = "rollwave"
     title: ClassVar[str] = "roll waves in granular flow down an inclined plane"
     scales: ClassVar[str] = ("length: depth h of the layer; velocity: I(tan slope) sqrt(phi g h cos slope) h/d; "
@@ -35,9 +40,11 @@ class RollWave(Flow):
 
     def __post_init__(self):
         super().__post_init__()
-        if not self.mu1 < self.mu < self.mu2:
-            raise ParameterError(f"{self.name}: slope_deg must lie between atan(mu1) and atan(mu2), "
-                                 f"({degrees(atan(self.mu1)):g}, {degrees(atan(self.mu2)):g}): "
+        low, high = self.law.range
+        if not low < self.mu < high:
+            ends = "atan(mu1) and atan(mu2)" if self.friction is Saturating else f"the ends of law {self.law.name}"
+            raise ParameterError(f"{self.name}: slope_deg must lie between {ends}, "
+                                 f"({degrees(atan(low)):g}, {degrees(atan(high)):g}): "
                                  f"no steady flow elsewhere (got {self.slope_deg:g})")
 
     def layers(self, names):
@@ -61,11 +68,15 @@ class RollWave(Flow):
 
     def state(self, layer, z, base):
         """Pressure 1 - z; the inertial number is uniform, I / I0 = (mu - mu1) / (mu2 - mu)."""
-        return {**super().state(layer, z, base), "pressure": 1 - z,
-                "inertial_number": (self.mu - self.mu1) / (self.mu2 - self.mu)}
+        return {**super().state(layer, z, base), "pressure": 1 - z, "inertial_number": self.inertial_number}
 
     def remarks(self):
-        return ["inertial_number in units of I0 of the friction law"]
+        return ["inertial_number in units of I0 of the friction law"] if self.unit else []
+
+    @property
+    def inertial_number(self):
+        """In units of I0 where that is no parameter."""
+        return float(self.law.inverse(self.mu))
 
     @property
     def mu(self):
@@ -73,7 +84,9 @@ class RollWave(Flow):
 
     @property
     def e0(self):
-        """(mu2 - mu)(mu - mu1)/(mu2 - mu1) without cancellation."""
+        """I mu'(I); of the saturating law (mu2 - mu)(mu - mu1)/(mu2 - mu1) without cancellation."""
+        if self.friction is not Saturating:
+            return self.inertial_number * float(self.law.slope(self.inertial_number))
         mu, mu1, mu2 = tan_deg(self.slope_deg), Fraction(self.mu1), Fraction(self.mu2)
         return float((mu2 - mu) * (mu - mu1) / (mu2 - mu1))
 

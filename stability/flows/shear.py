@@ -82,7 +82,7 @@ class Shear(Flow):
         """z at the points 0 <= s <= 1 of the layer."""
         return self._base.way.z(s)
 
-    def described(self) -> dict[str, Any]:
+    def stated(self) -> dict[str, Any]:
         fluid = _fluid(self._key)
         low, high = fluid.part.ends
         heights = np.linspace(low, high, _SHOWN)

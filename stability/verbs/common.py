@@ -27,6 +27,8 @@ _TEXT = "", ".txt"  # endings of a table
 _RADIANS = 1.6  # degrees: a smaller slope may be one in radians, of which a right angle has 1.57
 _PLOTS = (".png", ".pdf", ".svg")
 FLOW = f"one of {', '.join(FLOWS)}, or your own: path/to/file.py:Class or package.module:Class"
+LAW = ("friction law: linear, saturating, regularised, power, or your own: path/to/file.py:Class; its parameters are "
+       "listed by: --law NAME --help")
 _NUMBER = "V"  # metavar of a numeric parameter of a flow
 _JOIN = "join values with commas"
 _REMEDIES = {"SPEC": _JOIN, "NAME=SPEC": f"{_JOIN}, and sweep several parameters with: stability map"}  # by metavar
@@ -84,8 +86,10 @@ def _add_parameters(verb, words):
     if name is None:
         verb.add_argument_group("parameters of the flow", f"listed by: {verb.prog} FLOW --help")
         return
-    flow = find(name)
+    flow = _class_of(name, _law_named(words))
     group = verb.add_argument_group(f"parameters of {flow.name}", flow.title)
+    if hasattr(flow, "under"):
+        group.add_argument("--law", metavar="NAME", help=LAW)
     for item in fields(flow):
         text = f"{item.metadata['meaning']}; {allowed(item.metadata)}, default {item.default}".replace("%", "%%")
         for spelling in dict.fromkeys((flag(item), f"--{item.name}")):
@@ -112,6 +116,24 @@ def _metavar(item):
     return _NUMBER if numeric(item) else "FILE" if "table" in item.metadata else "NAME"
 
 
+def _law_named(words):
+    """The friction law that the words name, or None; an abbreviated or missing value is left to the parser."""
+    for word, following in zip(words, [*words[1:], None], strict=True):
+        if word == "--law" or word.startswith("--law="):
+            return word.partition("=")[2] if "=" in word else following
+    return None
+
+
+def _class_of(name, law):
+    """The class of flows with this name, under the friction law if one is named."""
+    flow = find(name)
+    if law is None or not hasattr(flow, "under"):
+        return flow
+    from ..flows.laws import find_law
+
+    return flow.under(find_law(law))
+
+
 def flag(item):
     """Command-line flag of a parameter."""
     return flag_of(item.name)
@@ -125,7 +147,7 @@ def nearest_flag(arguments, unknown):
     """A hint at the parameter that an unknown option may stand for."""
     if not getattr(arguments, "flow", None):
         return ""
-    flow = find(arguments.flow)
+    flow = _class_of(arguments.flow, getattr(arguments, "law", None))
     flags = [flag(item) for item in fields(flow)]
     return nearest(unknown.partition("=")[0], flags) or f"; {flow.name} has {', '.join(flags) or 'no parameters'}"
 
@@ -152,7 +174,7 @@ def flow_of(arguments):
     """The flow with the parameters given as flags."""
     given = {key.partition(" ")[2]: value for key, value in vars(arguments).items()
              if key.startswith("parameter ") and value is not None}
-    flow = find(arguments.flow)(**given)
+    flow = _class_of(arguments.flow, getattr(arguments, "law", None))(**given)
     return check_flow(flow)
 
 

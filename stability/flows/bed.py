@@ -1,0 +1,218 @@
+"""A granular bed sheared from above by a uniform stress, under any friction law: the thesis's dragged plate (2.35).
+
+Shear stress tau and pressure p = 1 - z fix friction, mu(I) = tau/p, and so the shear rate U' = I sqrt(p): lengths in
+units of (pressure on the bed)/(its weight per volume), in which p = 1 on the bed, velocities as in the scene. Where
+the law has a yield stress, the bed is at rest below p = tau/mu(0); elsewhere it creeps at all depths, and is held by a
+rigid floor where the shear rate has fallen to a given fraction of that at the surface.
+
+In zeta = sqrt(p), with e = I mu'(I): beta = mu' zeta, alpha = tau/zeta^2 - e/2, and with the weight g = U' = I zeta
+
+    dg/dzeta = I - 2 tau/(zeta^2 mu').
+
+Times mu' the equation of the shear rate is g v' mu' ~ e v' zeta: regular where the grains come to rest.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import chebyshev as C
+
+from ..errors import ParameterError
+from ..layer import FIELDS, Layer, Profile
+from ..smooth import Rough, fit
+from .law import Law
+
+_REST = 1e-8  # inertial number at which friction of a law with a yield stress is to rise linearly
+_NODES = 96  # of quadrature over a piece
+_LINEAR = 1e-3  # disagreement of its slope there with that at twice the number
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Part of the bed between two heights at which the law is smooth; `speed` at 0 <= s <= 1, below and at the top."""
+
+    depth: float  # r - zeta at the lower edge, where the law has a yield stress
+    zeta: float  # at the lower edge
+    span: float  # of zeta
+    singular: bool  # whether its lower edge is the yield surface
+    low: float  # velocity at the lower edge
+    series: Any  # of the velocity above it
+    error: float
+
+    @property
+    def top(self) -> float:
+        return self.low + float(C.chebval(1.0, self.series))
+
+
+@lru_cache(maxsize=512)
+def pieces(law: Law, shields: float, creep: float) -> tuple[Piece, ...]:
+    """The parts of the bed from below, with their velocities by quadrature to rounding."""
+    tau = law.rest * shields
+    edges = _edges(law, tau, creep)
+    found: list[Piece] = []
+    low = 0.0
+    for index, (zeta, above) in enumerate(zip(edges, edges[1:], strict=False)):
+        start = index == 0 and law.start > 0
+        bare = Piece(_excess(shields) if start else 0.0, zeta, zeta - above, start, low, np.zeros(1), 0.0)
+        span = bare.depth if start and len(edges) == 2 else bare.span
+        bare = Piece(0.0 if start else max(edges[0] - zeta, 0.0), zeta, span, start, low, np.zeros(1), 0.0)
+        found.append(_integrated(law, tau, bare))
+        low = found[-1].top
+    return tuple(found)
+
+
+def _excess(shields):
+    """sqrt(shields) - 1 without cancellation."""
+    return (shields - 1) / (np.sqrt(shields) + 1)
+
+
+def _edges(law, tau, creep):
+    """zeta at the ends of the pieces, from the bottom of the bed to 1."""
+    if law.start > 0:
+        bottom = float(np.sqrt(tau / law.start))
+    else:
+        surface = float(law.beyond(tau))
+        low, high = 1.0, 2.0
+        while _shear_rate(law, tau, high) > creep * surface:
+            high *= 2
+            if high > 1e6:
+                raise ParameterError(f"law {law.name}: friction falls too slowly as I -> 0 for creep = {creep:g}: the "
+                                     "floor lies a million lengths deep; raise creep")
+        while low < (middle := (low + high) / 2) < high:
+            low, high = (middle, high) if _shear_rate(law, tau, middle) > creep * surface else (low, middle)
+        bottom = high
+    inner = [float(np.sqrt(tau / law.mu(one))) for one in law.breaks if 0 < one < np.inf]
+    return [bottom, *sorted((zeta for zeta in inner if 1 < zeta < bottom), reverse=True), 1.0]
+
+
+def _shear_rate(law, tau, zeta):
+    return float(law.beyond(tau / zeta**2)) * zeta
+
+
+def _map(law, tau, piece, s):
+    """Depth below the lower edge of a piece in zeta, and its slope in s.
+
+    Friction that has a largest value mu2 sends I to infinity at zeta = a, a^2 = tau/mu2, just above the bed maybe:
+    zeta - a falls exponentially, so that the pole becomes an entire function of s.
+    """
+    top = law.range[1]
+    if not np.isfinite(top):
+        return piece.span * s, piece.span + 0 * s
+    gap = piece.zeta - np.sqrt(tau / top)
+    rate = np.log1p(-piece.span / gap)
+    return -gap * np.expm1(rate * s), -gap * rate * np.exp(rate * s)
+
+
+def _inertial(law, tau, piece, s):
+    """zeta and I at the points s of a piece."""
+    if law.start > 0:
+        fall = _map(law, tau, piece, s)[0]
+        zeta, depth = piece.zeta - fall, piece.depth + fall
+        return zeta, law.beyond(law.start * depth * (2 * zeta + depth) / zeta**2)
+    top = piece.zeta - piece.span
+    below = piece.span - _map(law, tau, piece, s)[0]
+    zeta = top + below
+    return zeta, law.fallen(top**2 / tau, below * (top + zeta) / tau)
+
+
+def _integrated(law, tau, piece):
+    """The piece with its velocity: the antiderivative of the series of dU/ds = I zeta dz/ds."""
+    def slope(s):
+        zeta, inertial = _inertial(law, tau, piece, s)
+        return np.asarray(2 * _map(law, tau, piece, s)[1] * zeta**2 * inertial)[None]
+
+    try:
+        found = fit(slope)
+    except Rough as rough:
+        raise ParameterError(f"law {law.name}: the shear rate of the bed is not smooth near s = {rough.s:.4g}: "
+                             "friction must rise smoothly with I, linearly from rest, and the stress stay clear of its "
+                             "largest value") from None
+    series = C.chebint(found.series[0], lbnd=-1) / 2
+    return Piece(piece.depth, piece.zeta, piece.span, piece.singular, piece.low, series, float(found.cut[0]))
+
+
+def profile(law: Law, tau: float, piece: Piece, inertia: float = 1.0) -> Callable[[Any], Profile]:
+    """Return the base state of a piece as a function of s."""
+    scale = float(law.slope(_inertial(law, tau, piece, np.array([1.0]))[1])[0])
+
+    def at(s):
+        zeta, inertial = _inertial(law, tau, piece, s)
+        stretch = _map(law, tau, piece, s)[1]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            slope = law.slope(inertial)
+            shear_rate = inertial * zeta
+            dg = stretch * (2 * tau / (zeta**2 * slope) - inertial)
+            eta = tau / shear_rate
+        return Profile(
+            dz=2 * stretch * zeta,
+            rho=inertia,
+            U=piece.low + C.chebval(2 * s - 1, piece.series),
+            dU=shear_rate,
+            eta=eta,
+            beta=slope * zeta,
+            alpha=tau / zeta**2 - inertial * slope / 2,
+            g=shear_rate,
+            dg=dg,
+            clear=slope / scale * zeta**4 if law.start > 0 else 1.0,
+        )
+
+    return at
+
+
+def layers(law: Law, shields: float, creep: float, inertia: float = 1.0) -> tuple[Layer, ...]:
+    """The layers of the bed from below; the uppermost is called bed, those below it bed_2, bed_3 ..."""
+    tau, parts = law.rest * shields, pieces(law, shields, creep)
+    names = [f"bed_{number}" for number in range(len(parts), 1, -1)] + ["bed"]
+    return tuple(Layer(name, profile(law, tau, piece, inertia), singular=int(piece.singular))
+                 for name, piece in zip(names, parts, strict=True))
+
+
+def below(edges: Any, count: int, yields: bool) -> tuple:
+    """Conditions below the top of a bed of `count` pieces: no flow at the yield surface, no slip on a floor.
+
+    All is continuous where the slope of the law jumps: stresses and shear rate of the base flow are.
+    """
+    parts = [getattr(edges, "bed" if not number else f"bed_{number + 1}") for number in range(count)]
+    bottom = parts[-1][0]
+    joints = [getattr(above[0], name) - getattr(below[1], name)
+              for above, below in zip(parts, parts[1:], strict=False) for name in FIELDS]
+    return (*([] if yields else [bottom.v]), bottom.w, *joints)
+
+
+def flux_slopes(law: Law, shields: float, creep: float) -> tuple[float, float]:
+    """Return dQ/d(shields) of the flux Q of grains, and dQ/dh, of the height h of the bed over a rigid floor.
+
+    Q is the integral of (p - 1) U' over p, and mu'(I) dI = d(tau/p), so that dQ/d(shields) is the integral of
+    (p - 1) rest/(sqrt(p) mu'): what the stress at the yield surface adds vanishes with U'. Over a floor a bed higher
+    by h has (p - 1) U' there more.
+    """
+    tau, total = law.rest * shields, 0.0
+    parts = pieces(law, shields, creep)
+    for piece in parts:
+        nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+        zeta, inertial = _inertial(law, tau, piece, (1 + nodes) / 2)
+        stretch = _map(law, tau, piece, (1 + nodes) / 2)[1]
+        total += float(weights @ (stretch * (zeta**2 - 1) * law.rest / law.slope(inertial)))
+    bottom = parts[0].zeta
+    over_floor = 0.0 if law.start > 0 else (bottom**2 - 1) * _shear_rate(law, tau, bottom)
+    return total, over_floor
+
+
+def check(law: Law, name: str, shields: float) -> None:
+    """Raise ParameterError where the bed cannot bear the stress, or its law has no regular yield surface."""
+    if not law.rest > 0:
+        raise ParameterError(f"{name}: law {law.name} has no yield stress to measure shields by: give it a property "
+                             "rest, the friction coefficient that shields = 1 stands for")
+    low, high = law.range
+    tau = law.rest * shields
+    if not low < tau < high:
+        raise ParameterError(f"{name}: shields must lie in (1, {high / law.rest:.6g}): friction of law {law.name} "
+                             f"cannot exceed {high:g}, no steady flow beyond (got {shields:g})")
+    if low > 0:
+        slopes = [float(law.slope(one)) for one in (_REST, 2 * _REST)]
+        if not (slopes[0] > 0 and abs(slopes[1] / slopes[0] - 1) < _LINEAR):
+            raise ParameterError(f"{name}: law {law.name}: friction must rise linearly with I from rest, or the shear "
+                                 "rate has no power series at the yield surface; take a law with a slope at I = 0")

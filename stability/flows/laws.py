@@ -1,0 +1,253 @@
+"""The friction laws of this package, by name, and those of one's own; what a law is: `stability.flows.law`."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from math import exp, inf, radians, tan
+from typing import ClassVar
+
+import numpy as np
+
+from ..errors import ParameterError
+from . import sources
+from .base import parameter
+from .law import Law, check_law
+
+_CLOSE = 1e-12  # relative difference of friction coefficients that is rounding
+
+
+@dataclass(frozen=True)
+class Linear(Law):
+    """mu = mu1 (1 + b I): thesis (4.48)."""
+
+    name: ClassVar[str] = "linear"
+    title: ClassVar[str] = "mu1 (1 + b I), thesis (4.48)"
+
+    mu1: float = parameter(0.4, 0, look=(0.05, 2.0), meaning="friction at rest")
+    b: float = parameter(1.0, 0, look=(0.05, 20.0), meaning="rate coefficient of friction mu1 (1 + b I)")
+
+    @property
+    def range(self):
+        return self.mu1, inf
+
+    @property
+    def start(self):
+        return self.mu1
+
+    def mu(self, I):  # noqa: E741
+        return self.mu1 * (1 + self.b * I)
+
+    def slope(self, I):  # noqa: E741
+        return self.mu1 * self.b + 0 * I
+
+    def inverse(self, mu):
+        self.check(mu)
+        return (mu / self.mu1 - 1) / self.b
+
+    def beyond(self, excess):
+        return excess / (self.mu1 * self.b)
+
+
+@dataclass(frozen=True)
+class Saturating(Law):
+    """mu = mu1 + (mu2 - mu1) I / (I0 + I): thesis (1.11), Jop, Forterre & Pouliquen (2005). Defaults: glass beads."""
+
+    name: ClassVar[str] = "saturating"
+    title: ClassVar[str] = "mu1 + (mu2 - mu1) / (1 + I0/I), thesis (1.11)"
+
+    mu1: float = parameter(tan(radians(20.9)), 0, look=(0.05, 2.0), meaning="friction at rest")
+    mu2: float = parameter(tan(radians(32.76)), 0, look=(0.05, 2.0), meaning="friction of rapid flow")
+    I0: float = parameter(0.279, 0, look=(0.01, 10.0),
+                          meaning="inertial number at which friction is half-way between mu1 and mu2")
+
+    def __post_init__(self):
+        super().__post_init__()
+        _rising(self)
+
+    @property
+    def range(self):
+        return self.mu1, self.mu2
+
+    @property
+    def start(self):
+        return self.mu1
+
+    def mu(self, I):  # noqa: E741
+        return self.mu1 + (self.mu2 - self.mu1) * I / (self.I0 + I)
+
+    def slope(self, I):  # noqa: E741
+        return (self.mu2 - self.mu1) * self.I0 / (self.I0 + I) ** 2
+
+    def inverse(self, mu):
+        self.check(mu)
+        return self.I0 * (mu - self.mu1) / (self.mu2 - mu)
+
+    def beyond(self, excess):
+        return self.I0 * excess / (self.mu2 - self.mu1 - excess)
+
+
+@dataclass(frozen=True)
+class PowerLaw(Law):
+    """mu = mu1 (1 + b I^n): at n = 1 the linear law; n = 1/2 is what discs in simulations of kinetic theory show."""
+
+    name: ClassVar[str] = "power"
+    title: ClassVar[str] = "mu1 (1 + b I^n)"
+
+    mu1: float = parameter(0.4, 0, look=(0.05, 2.0), meaning="friction at rest")
+    b: float = parameter(1.0, 0, look=(0.05, 20.0), meaning="rate coefficient of friction mu1 (1 + b I^n)")
+    n: float = parameter(1.0, 0, look=(0.2, 2.0), meaning="exponent of the inertial number")
+
+    @property
+    def range(self):
+        return self.mu1, inf
+
+    @property
+    def start(self):
+        return self.mu1
+
+    def mu(self, I):  # noqa: E741
+        return self.mu1 * (1 + self.b * I**self.n)
+
+    def slope(self, I):  # noqa: E741
+        return self.mu1 * self.b * self.n * I ** (self.n - 1)
+
+    def inverse(self, mu):
+        self.check(mu)
+        return self.beyond(mu - self.mu1)
+
+    def beyond(self, excess):
+        return (excess / (self.mu1 * self.b)) ** (1 / self.n)
+
+
+@dataclass(frozen=True)
+class Regularised(Law):
+    """Well posed as I -> 0 and as I -> inf: Barker & Gray (J. Fluid Mech. 828, 2017, 5-32).
+
+    mu = sqrt(alpha / ln(A/I)) below I1, (mu1 I0 + mu2 I + mu_inf I^2)/(I0 + I) above it. I1 is where the upper branch
+    turns well posed, C(I1) = 0, and A = I1 exp(alpha / mu(I1)^2) makes mu continuous; its slope jumps. There is no
+    yield stress: grains creep wherever they are sheared. On the lower branch I mu'/mu = mu^2/(2 alpha).
+    """
+
+    name: ClassVar[str] = "regularised"
+    yields: ClassVar[bool] = False
+    title: ClassVar[str] = ("sqrt(alpha / ln(A/I)) below I1, (mu1 I0 + mu2 I + mu_inf I^2)/(I0 + I) above, "
+                            "Barker & Gray (2017)")
+
+    mu1: float = parameter(tan(radians(20.9)), 0, look=(0.05, 2.0), meaning="friction at rest of the upper branch")
+    mu2: float = parameter(tan(radians(32.76)), 0, look=(0.05, 2.0), meaning="friction of rapid flow")
+    I0: float = parameter(0.279, 0, look=(0.01, 10.0), meaning="inertial number of the upper branch")
+    alpha: float = parameter(1.9, 0, 2, meaning="of the lower branch sqrt(alpha / ln(A/I))",
+                             reason="from 2 on slow flow is ill posed")
+    mu_inf: float = parameter(0.05, 0, closed=True, meaning="slope of friction in rapid flow")
+
+    def __post_init__(self):
+        super().__post_init__()
+        _rising(self)
+        _ = self.I1  # whether there is one
+
+    @property
+    def I1(self):
+        """The inertial number at which the branches meet."""
+        return _neutral(self.mu1, self.mu2, self.I0, self.mu_inf)
+
+    @property
+    def A(self):
+        return self.I1 * exp(self.alpha / self._upper(self.I1) ** 2)
+
+    @property
+    def breaks(self):  # type: ignore[override]
+        return (self.I1,)
+
+    @property
+    def range(self):
+        return 0.0, inf if self.mu_inf else self.mu2
+
+    @property
+    def start(self):
+        return 0.0
+
+    @property
+    def rest(self):
+        return self.mu1
+
+    def mu(self, I):  # noqa: E741
+        slow = np.minimum(I, self.I1)
+        with np.errstate(divide="ignore"):
+            lower = np.sqrt(self.alpha / np.log(self.A / slow))
+        return np.where(np.less(I, self.I1), lower, self._upper(I))
+
+    def slope(self, I):  # noqa: E741
+        I = np.asarray(I, dtype=float)  # noqa: E741
+        first = self._first
+        with np.errstate(divide="ignore", invalid="ignore"):
+            lower = self.mu(np.minimum(I, self.I1)) ** 3 / (2 * self.alpha * I)
+        upper = (first * self.I0 + self.mu_inf * I * (2 * self.I0 + I)) / (self.I0 + I) ** 2
+        return np.where(self.I1 > I, lower, upper)
+
+    def inverse(self, mu):
+        self.check(mu)
+        return self.beyond(mu)
+
+    def beyond(self, excess):
+        """On the upper branch mu_inf I^2 + (mu2 - mu) I = (mu - mu1) I0."""
+        mu = np.asarray(excess, dtype=float)
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+            lower = self.A * np.exp(-self.alpha / mu**2)
+            fall, rise = self.mu2 - mu, (mu - self.mu1) * self.I0
+            root = np.sqrt(np.maximum(fall**2 + 4 * self.mu_inf * rise, 0))
+            upper = np.where(fall > 0, 2 * rise / (fall + root), (root - fall) / (2 * self.mu_inf or 1.0))
+        return np.where(mu < self._upper(self.I1), lower, upper)
+
+    def fallen(self, inverse, rise):
+        """On the lower branch ln I falls like alpha/mu^2, without the rounding of the latter."""
+        mu = 1 / inverse
+        if mu > self._upper(self.I1) * (1 + _CLOSE):
+            return self.beyond(1 / (inverse + rise))
+        return self.beyond(mu) * np.exp(-rise * (self.alpha * (2 * inverse + rise)))
+
+    @property
+    def _first(self):
+        return self.mu2 - self.mu1
+
+    def _upper(self, I):  # noqa: E741
+        return (self.mu1 * self.I0 + self.mu2 * I + self.mu_inf * I**2) / (self.I0 + I)
+
+
+@lru_cache(maxsize=256)
+def _neutral(mu1, mu2, I0, mu_inf):
+    """The least I at which C of the upper branch of the regularised law is 0; ParameterError where there is none."""
+    def excess(I):  # noqa: E741
+        mu = (mu1 * I0 + mu2 * I + mu_inf * I**2) / (I0 + I)
+        slope = ((mu2 - mu1) * I0 + mu_inf * I * (2 * I0 + I)) / (I0 + I) ** 2
+        r = I * slope / mu
+        return 4 * r * (r - 1) + mu**2 * (1 - r / 2) ** 2
+
+    grid = I0 * np.geomspace(1e-12, 1e6, 3601)
+    inside = np.flatnonzero(excess(grid) <= 0)
+    if not len(inside) or not inside[0]:
+        raise ParameterError(f"regularised: mu1 = {mu1:g} and mu2 = {mu2:g} leave no inertial number at which the "
+                             "upper branch is well posed: nothing to join; take a smaller mu1")
+    low, high = float(grid[inside[0] - 1]), float(grid[inside[0]])
+    while low < (middle := (low + high) / 2) < high:
+        low, high = (middle, high) if excess(middle) > 0 else (low, middle)
+    return high
+
+
+def _rising(law):
+    if not law.mu1 < law.mu2:
+        raise ParameterError(f"{law.name}: mu2 must exceed mu1, friction at rest (got mu1 = {law.mu1:g}, "
+                             f"mu2 = {law.mu2:g})")
+
+
+LAWS = {law.name: law for law in (Linear, Saturating, Regularised, PowerLaw)}
+
+
+def find_law(name: str) -> type[Law]:
+    """Return the class of laws that a name stands for: of `LAWS`, or FILE.py:CLASS, or PACKAGE.MODULE:CLASS."""
+    if name in LAWS:
+        return LAWS[name]
+    if ":" not in name and not name.endswith(".py"):
+        from .catalogue import nearest
+
+        raise ParameterError(f"--law: unknown law {name!r}{nearest(name, LAWS)}; laws: {', '.join(LAWS)}; a law of "
+                             "your own is named path/to/file.py:Class or package.module:Class")
+    return check_law(sources.load(name), name)

@@ -1,0 +1,312 @@
+"""Steady granular shear flows of the thesis's chapter 2 under any friction law: plates, chute, pile, annulus.
+
+Stresses in equilibrium fix friction mu = (shear stress)/(pressure), the law the inertial number, and this the shear
+rate U' = I sqrt(p); the velocity follows by quadrature to rounding. beta = p mu' I/U' and alpha = mu - I mu'/2.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import atan, degrees, radians, tan
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.polynomial import chebyshev as C
+
+from ..angles import tan_deg
+from ..errors import ParameterError
+from ..layer import Layer, Profile
+from ..smooth import Rough, fit
+from . import bed as beds
+from .base import parameter
+from .granular import Granular
+from .law import Law
+from .laws import Saturating
+
+
+@dataclass(frozen=True)
+class Sheared:
+    """What equilibrium says at the points s of a layer: arrays (points,)."""
+
+    dz: Any
+    pressure: Any
+    stress: Any
+    inertial: Any
+    scale: float = 1.0  # of the shear rate: U' = scale I sqrt(pressure)
+
+    @property
+    def shear_rate(self):
+        return self.scale * self.inertial * np.sqrt(self.pressure)
+
+
+def sheared_layers(law: Law, parts: list[tuple[str, Callable[[Any], Sheared]]], inertia: float = 1.0) -> list[Layer]:
+    """The layers of a steady flow, from that at rest at its lower edge upwards."""
+    low, found = 0.0, []
+    for name, state in parts:
+        try:
+            one = fit(lambda s, state=state: np.asarray(state(s).shear_rate * state(s).dz)[None])
+        except Rough as rough:
+            raise ParameterError(f"layer {name}: the shear rate under law {law.name} is not smooth near "
+                                 f"s = {rough.s:.4g}: friction must rise smoothly with I, linearly from rest, and "
+                                 "the stress stay clear of its largest value") from None
+        series = C.chebint(one.series[0], lbnd=-1) / 2
+        found.append(Layer(name, _profile(law, state, series, low, inertia)))
+        low += float(C.chebval(1.0, series))
+    return found
+
+
+def _profile(law, state, series, low, inertia):
+    def at(s):
+        here = state(s)
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            rate, slope = here.shear_rate, law.slope(here.inertial)
+            return Profile(dz=here.dz, rho=inertia, U=low + C.chebval(2 * s - 1, series), dU=rate,
+                           eta=here.stress / rate, beta=slope * np.sqrt(here.pressure) / here.scale,
+                           alpha=here.stress / here.pressure - here.inertial * slope / 2)
+
+    return at
+
+
+@dataclass(frozen=True, kw_only=True)
+class Saturated(Granular):
+    """A scene whose usual law is the saturating one."""
+
+    friction = Saturating
+
+    mu1: float = parameter(tan(radians(20.9)), 0, look=(0.05, 2.0), meaning="friction at rest")
+    mu2: float = parameter(tan(radians(32.76)), 0, look=(0.05, 2.0), meaning="friction of rapid flow")
+    I0: float = parameter(0.279, 0, look=(0.01, 10.0), meaning="inertial number at which friction is half-way between")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Steady(Saturated):
+    """A steady flow whose waves are not those of a layer of this package: base flow alone."""
+
+    why: ClassVar[str] = "its perturbations are not those of a parallel layer"
+
+    def conditions(self, edges, names):
+        raise ParameterError(f"{self.name}: {self.why}: ask for stability base {self.name}")
+
+    def evaluate(self, k):
+        raise ParameterError(f"{self.name}: {self.why}: ask for stability base {self.name}")
+
+    def _within(self, name, value, low, high, shown):
+        """Refuse a friction coefficient that the law does not reach."""
+        if not low < value < high:
+            raise ParameterError(f"{self.name}: {name} must lie in {shown}: friction of law {self.law.name} lies "
+                                 f"between {low:.6g} and {high:.6g}, no steady flow elsewhere (got "
+                                 f"{getattr(self, name):g})")
+
+
+@dataclass(frozen=True)
+class PlaneShear(Saturated):
+    """Perturbations exp(i k x + sigma t) of grains sheared between rigid plates without gravity, U = z: thesis (2.1).
+
+    Pressure and shear rate are uniform, and so are all coefficients. u = w = 0 on the plates.
+    """
+
+    name: ClassVar[str] = "plane_shear"
+    title: ClassVar[str] = "plane shear of grains between plates, without gravity"
+    scales: ClassVar[str] = "length: distance of the plates; velocity: that of the upper plate; stress: pressure"
+
+    inertial: float = parameter(0.1, 0, look=(1e-3, 10.0), meaning="inertial number I: (shear rate) d/sqrt(p/density)")
+    inertia: float = parameter(1.0, 0, look=(1e-3, 1e4), meaning="density (plate velocity)^2 / pressure, (I l/d)^2")
+
+    def layers(self, names):
+        law, number = self.law, self.inertial
+        mu, e = float(law.mu(number)), number * float(law.slope(number))
+        return (Layer("grains", lambda s: Profile(dz=1.0, rho=self.inertia, U=s, dU=1.0, eta=mu, beta=e,
+                                                  alpha=mu - e / 2)),)
+
+    def conditions(self, edges, names):
+        lower, upper = edges.grains
+        return lower.v, lower.w, upper.v, upper.w
+
+    def state(self, layer, z, base):
+        return {**super().state(layer, z, base), "pressure": 1.0, "inertial_number": self.inertial}
+
+
+@dataclass(frozen=True)
+class Plate(Saturated):
+    """Perturbations exp(i k x + sigma t) of grains under a rough heavy plate that is dragged along: thesis (2.35).
+
+    The same base flow as the bed of `dune`, in units of the depth of grains z0 that weighs as much as the plate. The
+    plate is rigid: a wave displaces it neither up nor along, u = w = 0 at z = 0. At the yield surface w = 0: where it
+    moves is of second order, as U' = 0 there. Under a law without yield stress a rigid floor holds the creeping bed.
+    """
+
+    name: ClassVar[str] = "plate"
+    title: ClassVar[str] = "grains under a dragged heavy plate"
+    scales: ClassVar[str] = ("length: z0 = plate pressure / (density g); velocity: z0 sqrt(g z0) / d, in the thesis "
+                             "I0 times that; stress: plate pressure")
+
+    shields: float = parameter(1.2, 1, look=(1.01, 20.0), meaning="shear stress on the plate over yield stress there",
+                               reason="at or below 1 the bed does not yield")
+    grains: float = parameter(10.0, 0, look=(1.0, 1e3), meaning="z0 in grain diameters; inertia is its square")
+
+    def __post_init__(self):
+        super().__post_init__()
+        beds.check(self.law, self.name, self.shields)
+
+    @classmethod
+    def extras(cls, law):
+        return {} if law.yields else {"creep": parameter(
+            1e-6, 1e-9, 0.5, look=(1e-8, 1e-2), reason="the floor must hold the bed, and rounding leaves it no more",
+            meaning="shear rate at the rigid floor of the bed over that at the plate; the law has no yield stress")}
+
+    @property
+    def _pieces(self):
+        return beds.pieces(self.law, self.shields, getattr(self, "creep", 0.0))
+
+    @property
+    def bottom(self):  # type: ignore[override]
+        return 1 - self.shields if self.law.yields else 1 - self._pieces[0].zeta ** 2
+
+    def layers(self, names):
+        return beds.layers(self.law, self.shields, getattr(self, "creep", 0.0), self.grains**2)
+
+    def conditions(self, edges, names):
+        plate = edges.bed[1]
+        return *beds.below(edges, len(self._pieces), self.law.yields), plate.v, plate.w
+
+    def state(self, layer, z, base):
+        return {"U": base.U, "dU": base.dU, "shear_stress": self.law.rest * self.shields, "pressure": 1 - z,
+                "inertial_number": base.dU / np.sqrt(1 - z)}
+
+    def remarks(self):
+        kind = "yield surface" if self.law.yields else "rigid floor"
+        return [f"{kind} at z = {self.bottom:.10g}", f"plate velocity {self._pieces[-1].top:.10g}"]
+
+
+@dataclass(frozen=True)
+class Chute(Steady):
+    """Grains that fall between rough vertical walls at x = -1 and 1, in the middle as a plug: thesis (2.16).
+
+    The pressure is uniform (Janssen), p = plug / mu1, the shear stress x. z = 1 - |x| is the distance from a wall.
+    """
+
+    name: ClassVar[str] = "chute"
+    title: ClassVar[str] = "grains falling between vertical walls, with a plug"
+    scales: ClassVar[str] = ("length: half-width L; velocity: L sqrt(g L) / d, in the thesis I0 times that; "
+                             "stress: density g L")
+    why: ClassVar[str] = "its plug takes part in a wave as a rigid body between two shear zones, which is not derived"
+
+    plug: float = parameter(0.8, 0, 1, look=(0.05, 0.99), meaning="half-width W of the plug over that of the chute: "
+                            "mu1 pressure / (density g L)", reason="at or above 1 nothing flows")
+
+    def __post_init__(self):
+        super().__post_init__()
+        low, high = self.law.range
+        self._within("plug", self.law.rest / self.plug, low, high, f"({self.law.rest / high:.6g}, 1)")
+
+    def layers(self, names):
+        law, plug = self.law, self.plug
+        edge = plug if law.yields else 0.0
+        inner = sorted((x for x in (plug * float(law.mu(one)) / law.rest for one in law.breaks) if edge < x < 1),
+                       reverse=True)
+        ends = [1.0, *inner, edge]
+        parts = [(("shear" if not number else f"shear_{number + 1}"), self._part(outer, inside))
+                 for number, (outer, inside) in enumerate(zip(ends, ends[1:], strict=False))]
+        return tuple(sheared_layers(law, parts))
+
+    def _part(self, outer, inside):
+        law, plug = self.law, self.plug
+        pressure = plug / law.rest
+
+        def state(s):
+            x = outer - (outer - inside) * s
+            beyond = (outer - inside) * (1 - s) + (inside - plug) if law.yields else x
+            return Sheared(outer - inside, pressure, x, law.beyond(law.rest * beyond / plug))
+
+        return state
+
+    def state(self, layer, z, base):
+        pressure = self.plug / self.law.rest
+        return {"U": base.U, "dU": base.dU, "shear_stress": 1 - z, "pressure": pressure,
+                "inertial_number": base.dU / np.sqrt(pressure)}
+
+    @property
+    def plug_velocity(self):
+        layers = self.layers(None)
+        return float(layers[-1].profile(np.array([1.0])).U[0])
+
+    @property
+    def flux(self):
+        """Integral of the velocity from wall to wall."""
+        total = 0.0
+        nodes, weights = np.polynomial.legendre.leggauss(128)
+        for layer in self.layers(None):
+            base = layer.profile((1 + nodes) / 2)
+            total += float(weights @ np.broadcast_to(base.U * base.dz, nodes.shape)) / 2
+        return 2 * total + (2 * self.plug * self.plug_velocity if self.law.yields else 0.0)
+
+    def remarks(self):
+        kind = f"plug of half-width {self.plug:.10g}, velocity" if self.law.yields else \
+            "no yield stress: no plug; velocity"
+        return [f"{kind} {self.plug_velocity:.10g}", f"thickness of a shear zone {1 - self.plug:.10g}",
+                f"flux from wall to wall {self.flux:.10g}", "z: distance from a wall"]
+
+
+@dataclass(frozen=True)
+class Pile(Steady):
+    """Flow on a deep pile between side walls, averaged across: mu(I) = tan(slope) - mu_wall h, h the depth: (2.28).
+
+    Without yield stress grains creep down to where the walls bear all weight, tan(slope) = mu_wall h.
+    """
+
+    name: ClassVar[str] = "pile"
+    title: ClassVar[str] = "flow on a deep pile between side walls"
+    scales: ClassVar[str] = ("length: width W between the walls; velocity: W sqrt(g cos(slope) W) / d; "
+                             "stress: density g cos(slope) W")
+    why: ClassVar[str] = "friction of the side walls changes with the pressure of a wave, which the layers here lack"
+
+    slope_deg: float = parameter(28.0, 0, 90, look=(1.0, 89.0), meaning="inclination of the surface, degrees")
+    mu_wall: float = parameter(0.3, 0, look=(0.01, 2.0), meaning="friction coefficient of the side walls")
+
+    def __post_init__(self):
+        super().__post_init__()
+        low, high = self.law.range
+        self._within("slope_deg", self.mu, low, high, f"({degrees(atan(low)):.6g}, {degrees(atan(high)):.6g})")
+
+    @property
+    def mu(self):
+        return float(tan_deg(self.slope_deg))
+
+    @property
+    def depth(self):
+        """Of the flowing layer."""
+        return (self.mu - self.law.start) / self.mu_wall
+
+    @property
+    def bottom(self):  # type: ignore[override]
+        return -self.depth
+
+    def layers(self, names):
+        law = self.law
+        inner = sorted((one for one in ((self.mu - float(law.mu(number))) / self.mu_wall for number in law.breaks)
+                        if 0 < one < self.depth), reverse=True)
+        ends = [self.depth, *inner, 0.0]
+        names = [f"pile_{number}" for number in range(len(ends) - 1, 1, -1)] + ["pile"]
+        return tuple(sheared_layers(law, [(name, self._part(low, high)) for name, low, high in
+                                          zip(names, ends, ends[1:], strict=False)]))
+
+    def _part(self, low, high):
+        """In root = sqrt(depth): the surface is a smooth end of the velocity then."""
+        law, start, end = self.law, np.sqrt(low), np.sqrt(high)
+
+        def state(s):
+            root = end + (start - end) * (1 - s)
+            above = (start - end) * s * (start + root) + (self.depth - low)  # height above the bottom
+            inertial = law.beyond(self.mu_wall * above)
+            return Sheared(2 * (start - end) * root, root**2, (self.mu - self.mu_wall * root**2) * root**2, inertial)
+
+        return state
+
+    def state(self, layer, z, base):
+        depth = np.maximum(-z, 0)
+        mu = self.mu - self.mu_wall * depth
+        return {"U": base.U, "dU": base.dU, "shear_stress": mu * depth, "pressure": depth,
+                "inertial_number": self.law.beyond(np.maximum(mu - self.law.start, 0))}
+
+    def remarks(self):
+        return [f"depth of the flowing layer {self.depth:.10g}",
+                f"surface velocity {float(self.layers(None)[-1].profile(np.array([1.0])).U[0]):.10g}"]
