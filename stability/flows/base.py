@@ -101,7 +101,7 @@ class Flow:
         return {"U": base.U, "dU": base.dU, "shear_stress": base.stress * base.eta * base.dU}
 
     def stated(self) -> dict[str, Any]:
-        """Return the parameters as numbers and texts that tell this flow from all others: what headers of results say."""
+        """Return the parameters as numbers and texts that tell this flow from all others, for headers of results."""
         return {item.name: getattr(self, item.name) for item in fields(self)}
 
     def remarks(self) -> list[str]:
