@@ -47,6 +47,7 @@ class Annulus(Steady):
         return _solution(self.law, self.thickness, self.gamma)
 
     def layers(self, names):
+        self.base_only(names)
         omega, pressure = self._solved
         law, delta, gamma = self.law, self.thickness, self.gamma
 

@@ -14,6 +14,7 @@ from numpy.polynomial import chebyshev as C
 
 from ..angles import tan_deg
 from ..errors import ParameterError
+from ..forms import Form
 from ..layer import Layer, Profile
 from ..smooth import Rough, fit
 from . import bed as beds
@@ -83,10 +84,12 @@ class Steady(Saturated):
 
     why: ClassVar[str] = "its perturbations are not those of a parallel layer"
 
-    def conditions(self, edges, names):
-        raise ParameterError(f"{self.name}: {self.why}: ask for stability base {self.name}")
+    def base_only(self, names):
+        """Refuse what asks for equations, with k as a symbol."""
+        if isinstance(getattr(names, "k", None), Form):
+            self.conditions(None, names)
 
-    def evaluate(self, k):
+    def conditions(self, edges, names):
         raise ParameterError(f"{self.name}: {self.why}: ask for stability base {self.name}")
 
     def _within(self, name, value, low, high, shown):
@@ -199,6 +202,7 @@ class Chute(Steady):
         self._within("plug", self.law.rest / self.plug, low, high, f"({self.law.rest / high:.6g}, 1)")
 
     def layers(self, names):
+        self.base_only(names)
         law, plug = self.law, self.plug
         edge = plug if law.yields else 0.0
         inner = sorted((x for x in (plug * float(law.mu(one)) / law.rest for one in law.breaks) if edge < x < 1),
@@ -281,6 +285,7 @@ class Pile(Steady):
         return -self.depth
 
     def layers(self, names):
+        self.base_only(names)
         law = self.law
         inner = sorted((one for one in ((self.mu - float(law.mu(number))) / self.mu_wall for number in law.breaks)
                         if 0 < one < self.depth), reverse=True)
