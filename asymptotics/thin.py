@@ -20,6 +20,8 @@ FRICTION = (
     Parameter("I0", "inertial number half-way between them", sp.Integer(0), remedy="give a positive number"),
 )
 NAMES = ("mu1", "mu2", "I0")
+DEFAULTS = {"mu1": "0.3818628674187188", "mu2": "0.6434683848584607", "I0": "0.279"}  # glass beads: tan of 20.9, 32.76
+LATEX = {"mu1": r"\mu_1", "mu2": r"\mu_2", "I0": "I_0", "delta": r"\delta"}
 
 
 def rising(values) -> str:

@@ -14,13 +14,17 @@ import sympy as sp
 
 from ..parameters import Parameter
 from ..series import Expansion
+from ..thin import DEFAULTS as USUAL
 from ..thin import FRICTION, NAMES, delta, inertial_number, layer_law, mu1, rising, y
+from ..thin import LATEX as PRINTED
 from . import Regime
 
 SUMMARY = "annular shear of grains: rotation rate of the cylinder"
 
 PARAMETERS = (*FRICTION,
               Parameter("gamma", "sqrt(volume fraction) r0/d", sp.Integer(0), remedy="give a positive number"))
+DEFAULTS = {**USUAL, "gamma": "10"}
+LATEX = {**PRINTED, "gamma": r"\gamma"}
 
 gamma = sp.Symbol("gamma", positive=True)
 

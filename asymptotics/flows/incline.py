@@ -10,7 +10,9 @@ import sympy as sp
 
 from ..parameters import Parameter
 from ..series import Expansion
+from ..thin import DEFAULTS as USUAL
 from ..thin import FRICTION, NAMES, inertial_number, rising
+from ..thin import LATEX as PRINTED
 from . import Regime
 
 SUMMARY = "granular flow down an inclined plane: its flux"
@@ -20,6 +22,8 @@ PARAMETERS = (
     Parameter("slope_deg", "inclination in degrees, between those of mu1 and mu2", sp.Integer(0), sp.Integer(90),
               remedy="there is steady flow between atan(mu1) and atan(mu2)"),
 )
+DEFAULTS = {**USUAL, "slope_deg": "28"}
+LATEX = {**PRINTED, "slope": r"\theta"}
 
 H, z = sp.symbols("H z", positive=True)
 slope_deg = sp.Symbol("slope_deg", positive=True)

@@ -9,12 +9,15 @@ from functools import cache
 import sympy as sp
 
 from ..series import Expansion
+from ..thin import DEFAULTS as USUAL
 from ..thin import FRICTION, NAMES, delta, inertial_number, layer_law, mu1, rising, y
+from ..thin import LATEX as PRINTED
 from . import Regime
 
 SUMMARY = "grains under a dragged plate: its velocity"
 
 PARAMETERS = FRICTION
+DEFAULTS, LATEX = USUAL, PRINTED
 
 
 @cache

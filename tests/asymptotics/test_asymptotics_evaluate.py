@@ -18,7 +18,22 @@ def run(capsys, *arguments):
     return status, *capsys.readouterr()
 
 
-@pytest.mark.parametrize("name", flows.names())
+WAVES = [name for name in flows.names() if set(flows.load(name).REGIMES) != {"quasi-static"}]
+STEADY = {"plate": "plate", "chute": "chute", "annulus": "annulus", "incline": "rollwave"}  # and their scenes
+
+
+def test_steady_flows_have_the_defaults_of_their_scenes(capsys):
+    assert {*WAVES, *STEADY} == set(flows.names())
+    for name, scene in STEADY.items():
+        theirs = {item.name: item.default for item in fields(FLOWS[scene])}
+        ours = flows.load(name).DEFAULTS
+        assert {key: float(value) for key, value in ours.items() if key in theirs} == \
+            {key: theirs[key] for key in ours if key in theirs}
+        status, out, err = run(capsys, "evaluate", name, "--k", "1")
+        assert (status, out, err.count("\n")) == (2, "", 1)
+
+
+@pytest.mark.parametrize("name", WAVES)
 def test_defaults_are_those_of_the_numerics(name):
     """The two programs share no code: that they mean the same flow when nothing is said is checked here."""
     theirs = {item.name: item.default for item in fields(FLOWS[name])}
@@ -27,7 +42,7 @@ def test_defaults_are_those_of_the_numerics(name):
     assert set(ours) == {item.name for item in fields(FLOWS[name]) if "options" not in item.metadata}
 
 
-@pytest.mark.parametrize("name", flows.names())
+@pytest.mark.parametrize("name", WAVES)
 def test_numbers_are_near_those_of_dispersion(tmp_path, capsys, name):
     status, out, err = run(capsys, "evaluate", name, "--k", "1e-5:1e-4:3", "--csv")
     path = tmp_path / "series.csv"
