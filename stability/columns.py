@@ -1,7 +1,7 @@
 """What every column of every result means, and its units: for the help of the verbs, netCDF files and the reference.
 
 Every flow is dimensionless in scales of its own, L of length, V of velocity and S of stress, which
-`stability flows FLOW` lists; sigma and the shear rate are in V/L. Imports nothing: the help of a verb needs no numerics.
+`stability flows FLOW` lists; sigma and the shear rate are in V/L. Imports nothing: help needs no numerics.
 
 >>> print(column("growth_rate"))
 real part of the complex growth rate sigma, positive where waves grow [V/L]
@@ -96,7 +96,8 @@ BY_VERB = {
     "wellposed": ("layer", "height", "C", "short_waves", "ill_posed", "k", "surface_mode", DEGREES, "status"),
 }
 _BOUNDED = {"base": "dU", "kmax": "k_max", "sensitivity": "the derivative of sigma",
-            "neutral": "the parameter solved for", "critical": "the parameter solved for", "map": "k_max or sigma, or of the parameter solved for"}
+            "neutral": "the parameter solved for", "critical": "the parameter solved for",
+            "map": "k_max or sigma, or of the parameter solved for"}
 _PARAMETER_OF = {"dispersion": "parameter of --each", "kmax": "parameter of --over, and of --each",
                  "neutral": "parameter solved for, and those of --over and --each",
                  "critical": "parameter solved for", "map": "parameters of --over, and the one solved for"}
@@ -106,6 +107,9 @@ def column(name: str, verb: str = "dispersion", bounded: str | None = None) -> C
     """Return the `Column` of that name among those of a verb; `bounded` says what its `error` bounds if not the usual.
 
     Raises KeyError for a name that is none: parameters explain themselves.
+
+    >>> column("k_max", "kmax").units
+    '1/L'
     """
     of = bounded or _BOUNDED.get(verb, "sigma")
     units = _ERRORS.get(of, "of that quantity")
@@ -122,7 +126,11 @@ def column(name: str, verb: str = "dispersion", bounded: str | None = None) -> C
 
 
 def known(name: str) -> bool:
-    """Return whether a column of that name is explained here."""
+    """Return whether a column of that name is explained here. Raises nothing.
+
+    >>> known("degree_24"), known("shields")
+    (True, False)
+    """
     return name in _VARYING or _plain(name) in COLUMNS
 
 

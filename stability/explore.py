@@ -37,6 +37,15 @@ def explore(flow: Any, k: Any = None, source: str | None = None) -> "Explorer":
 
     `source` is what the command line calls the flow. In a notebook write `%matplotlib widget` before. Raises
     ParameterError where the flow or a wavenumber is none.
+
+    Wavenumbers are in 1/L, as on the axes.
+
+    >>> import matplotlib
+    >>> matplotlib.use("agg")  # no window: for tests
+    >>> from stability import flows
+    >>> window = explore(flows.Vortex(), [0.1, 1.0])
+    >>> sorted(window.sliders), window.command
+    (['Fr2', 'slope_deg'], 'stability dispersion vortex --k 0.1:1:2')
     """
     from .checks import check_wavenumbers
 
