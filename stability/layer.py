@@ -93,8 +93,8 @@ class Layer:
     coefficient of the shear-rate equation vanishes: each replaces one condition (the bounded
     solution is the one that the series can represent). `steady` drops the time derivative.
 
-    `name` is that of its `edges`. Heights are in L, as all else in the scales of the flow. Raises NotSmooth where a profile has a kink, a step or no finite
-    values.
+    `name` is that of its `edges`. Heights are in L, as all else in the scales of the flow. Raises NotSmooth where a
+    profile has a kink, a step or no finite values.
 
     >>> import numpy as np
     >>> layer = Layer("fluid", lambda s: Profile(dz=2.0, U=2 * s, eta=1.0, beta=1.0))
