@@ -211,6 +211,9 @@ def assert_order(numeric, series, k, expected: float | None = None, **options) -
     >>> law, longer = (expand("vortex", order=order, slope_deg=45, Fr2=0) for order in (2, 4))
     >>> assert_order(longer.function(), law, np.geomspace(1e-3, 1e-1, 9)).expected
     4.0
+
+    Wavenumbers and values are in the scales of the flow, the order is a number. Raises TooFewPoints and ValueError as
+    `compare` does.
     """
     __tracebackhide__ = True
     comparison = compare(numeric, series, k, expected, **options)
@@ -230,6 +233,8 @@ def assert_limit(numeric, expected, k, *, error=None, tolerance: float = LIMIT) 
     >>> import numpy as np
     >>> bool(abs(assert_limit(lambda k: np.sin(k) / k, 1, np.geomspace(1e-2, 1, 9)) - 1) < 1e-6)
     True
+
+    Wavenumbers and values are in the scales of the flow. Raises TooFewPoints where fewer than four k remain.
     """
     __tracebackhide__ = True
     ratio = not np.isscalar(expected) or expected != 0

@@ -28,6 +28,17 @@ class Expansion:
     parameters   {name: value, or None while symbolic}
     wavenumber   k, in terms of the gauge if that varies it
     step         distance between successive powers; None takes it from those that there are
+
+    `flow` and `regime` name what was expanded, in the `gauge`, a symbol. Units are the scales of the flow. Raises
+    StillSymbolic for unknown parameters and where a number is asked for too early, KeyError for a power without a
+    coefficient.
+
+    >>> from asymptotics import expand
+    >>> law = expand("vortex", order=2)
+    >>> law.with_parameters(slope_deg=45).coefficient(2), law.next_power
+    (-2/5, 4)
+    >>> law.truncated(2).values(), expand("vortex", slope_deg=45, order=4).truncated(2).next_power
+    ({2: None}, 4)
     """
 
     flow: str
@@ -61,6 +72,7 @@ class Expansion:
 
     @cached_property
     def expression(self) -> sp.Expr:
+        """The sum of the terms."""
         return sp.Add(*(c * self.gauge**power for power, c in self.terms.items()), evaluate=True)
 
     @property
@@ -74,6 +86,7 @@ class Expansion:
         return self._part(lambda c: -sp.im(c) / self.wavenumber)
 
     def coefficient(self, power: Any) -> sp.Expr:
+        """The exact coefficient of a power; raises KeyError where there is none."""
         return self.terms[sp.Rational(power)]
 
     def values(self) -> dict[sp.Rational, complex | None]:
@@ -81,7 +94,10 @@ class Expansion:
         return {power: _number(c) for power, c in self.terms.items()}
 
     def with_parameters(self, **values: Any) -> "Expansion":
-        """The same expansion with numbers (or expressions) for some of its parameters."""
+        """The same expansion with numbers (or expressions) for some of its parameters.
+
+        Raises StillSymbolic for a parameter that it has not.
+        """
         unknown = set(values) - set(self.parameters)
         if unknown:
             raise StillSymbolic(f"{self.flow}, regime {self.regime}, has no parameter {', '.join(sorted(unknown))}; "
@@ -93,7 +109,10 @@ class Expansion:
                        wavenumber=self.wavenumber.subs(substitution))
 
     def truncated(self, power: Any) -> "Expansion":
-        """Only the terms up to `power`; the next one that does not vanish sets the order of the error."""
+        """Only the terms up to `power`; the next one that does not vanish sets the order of the error.
+
+        Raises ValueError where `power` is no number.
+        """
         power = sp.Rational(power)
         left_out = [p for p, c in self.terms.items() if p > power and c != 0]
         terms = {p: c for p, c in self.terms.items() if p <= power}
@@ -106,6 +125,8 @@ class Expansion:
         >>> sigma = vortex.long_wave_law().function(slope_deg=45, Fr2=0)
         >>> print(f"{sigma(0.1).real:.7f}")
         -0.0039536
+
+        Raises StillSymbolic while a parameter has no value.
         """
         import numpy as np
 

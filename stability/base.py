@@ -30,6 +30,14 @@ class BaseFlow(Record):
     U), `shear_stress`, `viscosity` (shear stress over shear rate), `tangent_viscosity` (its derivative in the shear
     rate), and what else the flow states, such as `pressure` and `inertial_number`. `layer` has the names. nan where a
     quantity has no finite value. `flux` maps layers to the integral of U over z.
+
+    `flow` is what was asked about, `profiles` are the arrays. In the scales L, V and S of the flow: z in L, U in V,
+    stresses in S. An unknown name raises AttributeError.
+
+    >>> from stability import flows
+    >>> base = base_flow(flows.Poiseuille(), 3)
+    >>> base.layer[0], base.z.tolist(), base.dU.tolist(), round(base.flux["fluid"], 12)
+    ('fluid', [-1.0, 0.0, 1.0], [2.0, 0.0, -2.0], 1.333333333333)
     """
 
     flow: Any
@@ -84,6 +92,9 @@ def base_flow(flow: Any, points: int = POINTS) -> BaseFlow:
     >>> from stability import flows
     >>> base_flow(flows.Film(), 3).U.tolist()
     [0.0, 0.75, 1.0]
+
+    Arrays (points,) of each layer in the scales of the flow. Raises ParameterError for what is no flow, NotSmooth where
+    a profile is rough.
     """
     check_flow(flow)
     points = check_integer(points, "points", 2, MOST)

@@ -13,6 +13,7 @@ class Eigenvalue:
 
     @property
     def growth_rate(self) -> float:
+        """Real part of sigma, V/L: positive where the mode grows."""
         return self.sigma.real
 
     @property
@@ -22,6 +23,7 @@ class Eigenvalue:
 
     @property
     def phase_speed(self) -> float:
+        """Real part of c, V: positive downstream."""
         return self.c.real + 0.0  # no negative zero
 
 
@@ -37,10 +39,12 @@ class Eigenvalues:
 
     @property
     def growth_rate(self) -> np.ndarray:
+        """Real parts of sigma, V/L."""
         return self.sigma.real
 
     @property
     def phase_speed(self) -> np.ndarray:
+        """Real parts of i sigma / k, V."""
         return self._of_each("phase_speed")
 
     @property
@@ -50,6 +54,7 @@ class Eigenvalues:
 
     @property
     def status(self) -> tuple[str, ...]:
+        """"resolved", or what failed, of each."""
         return tuple(mode.status for mode in self.modes)
 
     def _of_each(self, name: str) -> np.ndarray:

@@ -29,6 +29,14 @@ class Energy:
 
     `state @ x` holds the velocities at Gauss points and the amplitudes, `adjoint @ y` those of the adjoint state;
     their inner product is y^H B x / `width`.
+
+    Raises nothing. Units: the square of a velocity times a length, in the scales of the flow.
+
+    >>> from stability import flows
+    >>> from stability.solver import Solver
+    >>> norm = energy(Solver(flows.Couette()), 1.0, 16)
+    >>> norm.state.shape[1] == norm.adjoint.shape[1]
+    True
     """
 
     state: np.ndarray
@@ -37,7 +45,15 @@ class Energy:
 
 
 def energy(solver, k, degree):
-    """Return the `Energy` of the vectors of one degree at wavenumber k."""
+    """Return the `Energy` of the vectors of one degree at wavenumber k.
+
+    `k` is in 1/L. Raises what the profiles of the flow raise, such as NotSmooth.
+
+    >>> from stability import flows
+    >>> from stability.solver import Solver
+    >>> energy(Solver(flows.Couette()), 1.0, 16).width > 0
+    True
+    """
     flow, pencil = solver.flow, solver.pencil(degree)
     symbols = {name: value[0] for name, value in solver.symbols(k).items()}
     layers = flow.layers(SimpleNamespace(**symbols))
@@ -67,6 +83,12 @@ def condition_numbers(modes):
     """Return the condition numbers (modes,) of eigenvalues of one flow, or of its symmetry classes, in the energy norm.
 
     Half the domain gives the same number as the whole.
+
+    They are numbers without units, 1 for a normal operator. Raises nothing of its own.
+
+    >>> from stability import flows, spectrum
+    >>> [row["condition"] >= 1 for row in spectrum(flows.Couette(), 1.0, 2)]
+    [True, True]
     """
     solvers: dict = {}
     norms: dict = {}

@@ -2,11 +2,30 @@
 
 
 class StabilityError(Exception):
-    """Base of all errors of this package."""
+    """Base of all errors of this package.
+
+    No other one is raised for input that cannot be computed; numbers in messages are in the scales of the flow.
+
+    >>> from stability import StabilityError, flows, k_max
+    >>> try:
+    ...     k_max(flows.Vortex())
+    ... except StabilityError as reason:
+    ...     print(type(reason).__name__)
+    NotResolved
+    """
 
 
 class ParameterError(StabilityError, ValueError):
-    """A parameter lies outside its range."""
+    """A parameter lies outside its range.
+
+    Raised before anything is computed; the message has name, value, range and units or remedy. A ValueError as well.
+
+    >>> from stability import flows
+    >>> flows.Film(slope_deg=200.0)
+    Traceback (most recent call last):
+        ...
+    stability.errors.ParameterError: film: slope_deg must lie in (0, 180) (got 200)
+    """
 
 
 class NotSmooth(ParameterError):
@@ -34,11 +53,27 @@ class ConditionCount(ParameterError):
 
 
 class NotResolved(StabilityError):
-    """The tolerance is not met at the largest degree allowed."""
+    """The tolerance is not met at the largest degree allowed.
+
+    Raised by default; with strict=False the record carries the number and its error bar (in units of V/L), and a
+    status.
+
+    >>> from stability import dispersion, flows
+    >>> relation = dispersion(flows.Poiseuille(Re=1e6), 1.0, "most-unstable", max_degree=24, strict=False)
+    >>> relation[0]["status"] == "resolved", relation[0]["growth_rate"]
+    (False, None)
+    """
 
 
 class ModeLost(StabilityError):
-    """A mode could not be followed without risking a jump to another one."""
+    """A mode could not be followed without risking a jump to another one.
+
+    Raised by default, naming flow and wavenumber (units of 1/L); with strict=False the rows say so instead.
+
+    >>> from stability import ModeLost, StabilityError
+    >>> issubclass(ModeLost, StabilityError)
+    True
+    """
 
 
 class StepsExhausted(ModeLost):

@@ -37,6 +37,15 @@ def explore(flow: Any, k: Any = None, source: str | None = None) -> "Explorer":
 
     `source` is what the command line calls the flow. In a notebook write `%matplotlib widget` before. Raises
     ParameterError where the flow or a wavenumber is none.
+
+    Wavenumbers are in 1/L, as on the axes.
+
+    >>> import matplotlib
+    >>> matplotlib.use("agg")  # no window: for tests
+    >>> from stability import flows
+    >>> window = explore(flows.Vortex(), [0.1, 1.0])
+    >>> sorted(window.sliders), window.command
+    (['Fr2', 'slope_deg'], 'stability dispersion vortex --k 0.1:1:2')
     """
     from .checks import check_wavenumbers
 
@@ -253,9 +262,7 @@ class Explorer:
         """The command that prints what is shown."""
         given = [f"--{item.name.replace('_', '-')} {getattr(self.flow, item.name)}" for item in fields(self.flow)
                  if getattr(self.flow, item.name) != item.default]
-        k = self.k
-        spacing = "" if len(k) < 3 or np.allclose(np.diff(np.log(k)), np.log(k[1] / k[0])) else ":lin"
-        return " ".join(["stability dispersion", self.source, *given, f"--k {k[0]:g}:{k[-1]:g}:{len(k)}{spacing}"])
+        return " ".join(["stability dispersion", self.source, *given, f"--k {_spec_of(self.k)}"])
 
     def copy(self):
         """Put the command on the clipboard of the desktop where there is one, and into the window and the terminal."""
@@ -312,3 +319,11 @@ class Explorer:
         self._lay()
         canvas.blit(self.figure.bbox)
         canvas.flush_events()
+
+
+def _spec_of(k):
+    """Wavenumbers (points,) as the command line takes them: a range where they are evenly spaced, or else a list."""
+    for steps, spacing in ((np.diff(np.log(k)), ""), (np.diff(k), ":lin")):
+        if len(k) > 1 and np.allclose(steps, steps[0]):
+            return f"{k[0]:g}:{k[-1]:g}:{len(k)}{spacing}"
+    return ",".join(f"{value:.17g}" if float(f"{value:g}") != value else f"{value:g}" for value in k)

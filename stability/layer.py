@@ -53,6 +53,15 @@ class Profile:
     coefficients become polynomials and its matrix banded.
     `rho`, `eta`, `beta` and the unknown stresses are in units of `stress`: viscous flows measure them by their
     viscosity, or else all stresses would be enormous beside the velocities at small Re.
+
+    In the scales of the flow: `rho` density, `eta` shear stress over shear rate, `beta` the slope of the shear stress
+    in the shear rate, `alpha` that in the pressure, U velocity; `g` scales the velocity along, u = i k^a g v. What is
+    inconsistent raises ParameterError when the flow is solved.
+
+    >>> import numpy as np
+    >>> s = np.linspace(0, 1, 3)
+    >>> Profile(dz=2.0, U=1 - (2 * s - 1)**2, eta=1e-4, beta=1e-4).U.tolist()
+    [0.0, 1.0, 0.0]
     """
 
     dz: Any
@@ -83,6 +92,16 @@ class Layer:
     `profile(s)` returns its base flow. `singular` is the number of edges at which the leading
     coefficient of the shear-rate equation vanishes: each replaces one condition (the bounded
     solution is the one that the series can represent). `steady` drops the time derivative.
+
+    `name` is that of its `edges`. Heights are in L, as all else in the scales of the flow. Raises NotSmooth where a
+    profile has a kink, a step or no finite values.
+
+    >>> import numpy as np
+    >>> layer = Layer("fluid", lambda s: Profile(dz=2.0, U=2 * s, eta=1.0, beta=1.0))
+    >>> layer.height(np.array([0.0, 1.0])).round(12).tolist(), layer.base(np.array([0.5])).dU.round(12).tolist()
+    ([0.0, 2.0], [1.0])
+    >>> layer.slope("U", np.array([0.5]))[0].round(12).tolist(), layer.resolved(lambda b, s: [b.U]).length
+    ([2.0], 2)
     """
 
     name: str
@@ -91,7 +110,10 @@ class Layer:
     steady: bool = False
 
     def height(self, s: np.ndarray) -> np.ndarray:
-        """Distance of the points 0 <= s <= 1 from the lower edge: the integral of dz/ds."""
+        """Distance of the points 0 <= s <= 1 from the lower edge: the integral of dz/ds.
+
+        Raises NotSmooth where dz/ds is rough.
+        """
         return C.chebval(2 * s - 1, self._height)
 
     @cached_property
@@ -115,6 +137,8 @@ class Layer:
         The series is an exact polynomial, and so is its slope: the flow of this polynomial is what is solved. The
         bound is that of the slope of the function: what the series has left out may have the highest degree that is
         looked at, rounding has its own.
+
+        Raises NotSmooth where the series does not end.
         """
         series, cut, largest = self._series[name]
         degrees, sizes = np.array([[MOST], [len(series) - 1]]), np.array([cut, _NOISE * largest])

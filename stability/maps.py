@@ -179,6 +179,15 @@ class Map(Record):
 
     Columns hold nan where there is no number; `status` then says why. `table` (points, columns) holds None there.
     `damaged` counts the lines of the journal that could not be used; what they alone held was computed again.
+
+    `request` is what was asked for: flow, axes, quantity. Units are those of the columns: `stability map --help` lists
+    them, or `stability.columns`. Raises KeyError for a name that is no column, ParameterError where a file cannot be
+    written.
+
+    >>> from stability import flows, parameter_map
+    >>> found = parameter_map(flows.Vortex(), {"slope_deg": [30.0, 45.0]}, k=[1e-3, 2e-3])
+    >>> found["growth_rate"].shape, str(found["status"][0, 0]), bool(found.resolved.all())
+    ((2, 2), 'resolved', True)
     """
 
     request: Request
@@ -187,10 +196,12 @@ class Map(Record):
 
     @property
     def flow(self) -> Any:  # type: ignore[override]
+        """The flow whose parameters are swept."""
         return self.request.flow
 
     @property
     def quantity(self) -> str:
+        """"k_max", "growth_rate" or "neutral"."""
         return self.request.quantity
 
     @property
@@ -262,7 +273,16 @@ class Map(Record):
 
     def plot(self, ax: "Axes | None" = None, quantity: str | None = None, *, label: str | None = None,
              **line_options: Any) -> "Axes":
-        """Draw a result (the first, by default) over one or two axes into the matplotlib Axes `ax`, or a new one."""
+        """Draw a result (the first, by default) over one or two axes into the matplotlib Axes `ax`, or a new one.
+
+        Units are those of the columns. Raises ParameterError for a quantity it has not and for three axes.
+
+        >>> from matplotlib.figure import Figure
+        >>> from stability import flows, parameter_map
+        >>> found = parameter_map(flows.Vortex(), {"slope_deg": [30.0, 45.0]}, k=[1.0, 2.0])
+        >>> found.plot(Figure().add_subplot(), "phase_speed").get_xlabel()[:10]
+        'wavenumber'
+        """
         from . import plots
 
         name = self.results[0] if quantity is None else check_options("quantity", quantity, self.results[:-1])
@@ -313,6 +333,9 @@ def parameter_map(flow: "Flow", over: "Mapping[str, ArrayLike]", quantity: str |
     >>> found = parameter_map(flows.Dune(), {"shields": [1.5, 2.0], "Re": [10.0, 100.0]})
     >>> f"{found['k_max'][1, 0]:.7f}"
     '0.8492020'
+
+    Columns have the units of `stability map --help`. Raises ParameterError where the request makes no map (names,
+    values, wavenumbers that do not fit together) and WorkersLost where processes end again and again.
     """
     quantity = usual_quantity(k, vary) if quantity is None else quantity
     request = Request(flow, over, quantity, k, vary, tolerance, max_degree)

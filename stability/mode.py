@@ -27,6 +27,17 @@ class Mode(Eigenvalue):
     `rounding` the parts of the error, `degree` of the series, `status` "resolved" or what failed. `x`, `y`
     (size,) hold the right and left eigenvector in the pencil of that degree, with y^H B x = 1. `data_error` is the
     standard error of the growth rate from the errors of a measured base flow, None where nothing was measured.
+
+    Of `flow` at wavenumber `k` (1/L, the scales of the flow): `sigma`, `growth_rate` and the errors are in V/L,
+    `slope`, `c` and `phase_speed` in V. `rate` = sigma / k^(1 + order) and its derivative `rate_slope` are what the
+    pencil has. Its methods raise ParameterError where heights lie outside the flow.
+
+    >>> from stability import dispersion, flows
+    >>> mode = dispersion(flows.Dune(), 1.0).modes[0]
+    >>> print(f"{mode.sigma:.8f}")
+    0.23433997-1.00915105j
+    >>> mode.status, mode.error < 1e-12, bool(abs(mode.fields(0.0).p - 1) < 1e-9)  # p = s0 at the interface
+    ('resolved', True, True)
     """
 
     flow: Any
@@ -53,6 +64,11 @@ class Mode(Eigenvalue):
         """Return velocities, stresses and pressure of the eigenfunction at heights z, as `eigenfunction.Fields`.
 
         Raises ParameterError where z lies outside the layers of the flow.
+
+        >>> from stability import dispersion, flows
+        >>> fields = dispersion(flows.Film(), 1e-4).modes[0].fields([0.0, 1.0])  # z in depths of the film
+        >>> abs(fields.u).round(3).tolist()  # no slip; -dU' of the lifted surface: u = 2
+        [0.0, 2.0]
         """
         from .eigenfunction import Eigenfunction
 
@@ -72,7 +88,17 @@ class Mode(Eigenvalue):
                       limits={"xlim": (0, None)}),)
 
     def plot(self, ax: "Axes | None" = None, *, label: str | None = None, **line_options: Any) -> "Axes":
-        """Draw |u| and |w| against z into the matplotlib Axes `ax`, or a new one; return it."""
+        """Draw |u| and |w| against z into the matplotlib Axes `ax`, or a new one; return it.
+
+        Heights are in L, velocities in V for a unit amplitude of the first surface. Raises AttributeError for an option
+        that matplotlib's lines have not.
+
+        >>> from matplotlib.figure import Figure
+        >>> from stability import dispersion, flows
+        >>> mode = dispersion(flows.Vortex(), 1.0).modes[0]
+        >>> len(mode.plot(Figure().add_subplot(), color="black").lines)
+        2
+        """
         from . import plots
 
         return plots.plot(self.panels(), ax, None, label, **line_options)
@@ -82,13 +108,28 @@ class Mode(Eigenvalue):
 
         What the change of U' = dU/dz does is in it. S has the units of sigma over those of U and z, and the shape of z.
         Raises ParameterError outside the layers and for flows in which U enters not through convection alone.
+
+        >>> import numpy as np
+        >>> from stability import dispersion, flows
+        >>> mode = dispersion(flows.Poiseuille(Re=1e4), 1.0).modes[0]
+        >>> nodes, weights = np.polynomial.legendre.leggauss(400)
+        >>> print(f"{weights @ mode.base_flow_sensitivity(nodes):.6f}")  # U + 1 adds -i k: the frame moves
+        -0.000000-1.000000j
         """
         from .velocity_response import density
 
         return density(self, z)
 
     def plot_base_flow_sensitivity(self, ax: "Axes | None" = None) -> "Axes":
-        """Draw real and imaginary part of S against z into the matplotlib Axes `ax`, or a new one; return it."""
+        """Draw real and imaginary part of S against z into the matplotlib Axes `ax`, or a new one; return it.
+
+        Units and errors are those of `base_flow_sensitivity`, which raises ParameterError where there is no S.
+
+        >>> from stability import dispersion, flows
+        >>> mode = dispersion(flows.Couette(), 1.0).modes[0]
+        >>> mode.plot_base_flow_sensitivity().get_ylabel()
+        'height $z$'
+        """
         from . import plots
         from .velocity_response import panel
 
@@ -98,6 +139,13 @@ class Mode(Eigenvalue):
         """Return d sigma / d parameter of every numeric parameter, and "k", at the others fixed, from the left vector.
 
         None where there is no derivative: at an infinite value. `sensitivity.sensitivities` adds error bars.
+
+        Units are V/L over those of the parameter. Raises ParameterError where the flow allows no neighbouring value.
+
+        >>> from stability import dispersion, flows
+        >>> slopes = dispersion(flows.Film(), 1e-5).modes[0].sensitivity()
+        >>> print(f"{slopes['k']:.2f}")  # waves of twice the surface speed: sigma = -2 i k
+        0.00-2.00j
         """
         from .sensitivity import sensitivities
 

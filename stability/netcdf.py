@@ -8,35 +8,11 @@ from typing import Any
 import numpy as np
 from scipy.io import netcdf_file
 
+from .columns import SCALES, column, known
 from .record import Record
 
 CONVENTION = ("normal mode exp(i k x + sigma t): positive growth_rate = Re sigma is unstable; "
               "c = i sigma / k, positive phase_speed = Re c is downstream")
-MEANINGS = {
-    "k": "wavenumber",
-    "k_max": "wavenumber of the largest growth rate",
-    "growth_rate": "real part of the complex growth rate sigma",
-    "phase_speed": "real part of the complex wave speed i sigma / k",
-    "sigma": "complex growth rate",
-    "slope": "derivative of sigma with respect to k",
-    "degree": "Chebyshev degree",
-    "condition": "condition number of the eigenvalue in the energy norm",
-    "status": "resolved, or what failed",
-    "parameter": "parameter of the flow, or k",
-    "value": "value of the parameter",
-    "d_growth_rate": "derivative of the growth rate with respect to the parameter",
-    "d_phase_speed": "derivative of the phase speed with respect to the parameter",
-    "elasticity": "relative change of the growth rate per relative change of the parameter",
-    "growth_error": "bound of the absolute error of sigma",
-    "k_error": "bound of the absolute error of k",
-    "growth_data_error": "standard error of the growth rate from the errors of the measured base flow",
-    "maxima": "number of local maxima of the growth rate",
-    "second_k_max": "wavenumber of the second largest maximum of the growth rate",
-    "second_growth_rate": "growth rate of the second largest maximum",
-    "maxima_k": "wavenumbers of all local maxima of the growth rate",
-    "maxima_growth_rate": "growth rates of all local maxima",
-}
-
 _RENAMED = {"mode": "mode_followed"}  # scipy's file object has an attribute `mode` of its own
 
 
@@ -57,7 +33,7 @@ def attributes_of(record: Record) -> dict[str, Any]:
     header = record.header()
     return {"title": f"{type(record).__name__} of {record.flow.title}", **header.pop("parameters"),
             **{name: "\n".join(value) if name == "notes" else value for name, value in header.items()},
-            "scales": record.flow.scales, "convention": CONVENTION}
+            "scales": f"{record.flow.scales}; {SCALES}", "convention": CONVENTION}
 
 
 def variables_of(record: Record) -> Iterator[tuple[str, tuple[str, ...], np.ndarray, dict[str, str]]]:
@@ -65,9 +41,9 @@ def variables_of(record: Record) -> Iterator[tuple[str, tuple[str, ...], np.ndar
     for name, values in record.columns().items():
         for part, numbers in _real(name, values):
             own = (part,) if part in record.dimensions else record.dimensions
-            units = {} if numbers.dtype.kind == "U" else {"units": "1"}  # the scales are an attribute of the file
+            units = {} if numbers.dtype.kind == "U" else {"units": "1"}  # in `scale`, from the scales of the file
             dimensions = (*own, "maximum")[:numbers.ndim]
-            yield part, dimensions, numbers, {"long_name": _meaning(record, name, part), **units}
+            yield part, dimensions, numbers, {**_about(record, name, part), **units}
 
 
 def _plain(value: Any) -> Any:
@@ -81,12 +57,17 @@ def _real(name: str, values: np.ndarray) -> list[tuple[str, np.ndarray]]:
     return [(f"{name}_real", values.real), (f"{name}_imag", values.imag)]
 
 
-def _meaning(record: Record, name: str, part: str) -> str:
+def _about(record: Record, name: str, part: str) -> dict[str, str]:
+    """The attributes of a variable: parameters explain themselves, other columns are explained in `columns`."""
     parameters = {item.name: item.metadata["meaning"] for item in fields(record.flow)}
-    of = "the growth rate" if record.bounded == "sigma" else record.bounded
-    meaning = {**parameters, **MEANINGS, "error": f"bound of the absolute error of {record.bounded}",
-               "data_error": f"standard error of {of} from that of the measured base flow"}.get(name, name)
-    return meaning if part == name else f"{meaning}, {'real' if part.endswith('real') else 'imaginary'} part"
+    if name in parameters:
+        meaning, scale = parameters[name], ""
+    elif known(name):
+        meaning, scale = column(name, "map", record.bounded)
+    else:
+        meaning, scale = name, ""
+    long_name = meaning if part == name else f"{meaning}, {'real' if part.endswith('real') else 'imaginary'} part"
+    return {"long_name": long_name, **({"scale": scale} if scale else {})}
 
 
 def _add(file: netcdf_file, name: str, dimensions: tuple[str, ...], values: np.ndarray, about: dict[str, str]) -> None:
@@ -101,8 +82,9 @@ def _add(file: netcdf_file, name: str, dimensions: tuple[str, ...], values: np.n
     variable.long_name = about["long_name"].encode()
     if values.dtype.kind == "S":
         variable._Encoding = b"utf-8"
-    else:
-        variable.units = about["units"].encode()
+    for key in ("units", "scale"):
+        if key in about:
+            setattr(variable, key, about[key].encode())
 
 
 def _characters(texts: np.ndarray) -> np.ndarray:

@@ -71,6 +71,15 @@ class NeutralPoint(_ZeroGrowth):
     numbers may be None. `others` are further values in the range that was searched: where the largest growth rate
     changes sign again, or, with "; inside" in their status, where a crest of growth does while other waves grow.
     `data_error` is the standard error of `value` from that of a measured base flow, None where nothing was measured.
+
+    `flow` and `vary` are what was asked for, `settings` range, tolerance and the like, `remark` a note of the model.
+    Units: `value`, `error` and `data_error` those of the parameter, `k` and `k_error` 1/L, `phase_speed` V. Writing
+    raises ParameterError where a file cannot be written.
+
+    >>> from stability import critical, flows
+    >>> point = critical(flows.Film(slope_deg=45.0), "Re", span=(1.0, 1.5), long_wave=True)
+    >>> f"{point.value:.10f}", point.k, point.status  # Yih (1963): (5/4) cot(slope)
+    ('1.2500000000', 0.0, 'resolved')
     """
 
     flow: Any
@@ -117,7 +126,19 @@ class NeutralPoint(_ZeroGrowth):
 @dataclass(frozen=True, repr=False)
 class NeutralCurve(_ZeroGrowth):
     """Neutral points at the wavenumbers asked for, by increasing value at each, and the `trace` (points, 2)
-    of (k, value) along the whole curve from one end to the other."""
+    of (k, value) along the whole curve from one end to the other.
+
+    `flow` and `vary` are what was asked for, `points` (points,) are `NeutralPoint` records, `settings` range and
+    tolerance. Values have the units of the parameter, k is in 1/L. Writing raises ParameterError where a file cannot be
+    written.
+
+    >>> from stability import flows, neutral_curve
+    >>> curve = neutral_curve(flows.Poiseuille(), "Re", [1.0])
+    >>> [f"{point.value:.4f}" for point in curve.points]
+    ['5814.8288', '31956.4510']
+    >>> curve.trace.shape[1]
+    2
+    """
 
     flow: Any
     vary: str
@@ -143,7 +164,17 @@ class NeutralCurve(_ZeroGrowth):
 
 @dataclass(frozen=True, repr=False)
 class NeutralSweep(_ZeroGrowth):
-    """The critical point of every flow of a sweep over the parameter `over` of `flow`."""
+    """The critical point of every flow of a sweep over the parameter `over` of `flow`.
+
+    `flow`, `vary` and `over` are what was asked for, `points` (flows,) are `NeutralPoint` records, units as there.
+    Writing raises ParameterError where a file cannot be written.
+
+    >>> from stability import critical, flows
+    >>> film = flows.Film()
+    >>> points = (critical(film, "Re", span=(1.0, 3.0), long_wave=True),)
+    >>> NeutralSweep(film, "Re", "slope_deg", points)["Re"].round(6).tolist()  # (5/4) cot(30 deg)
+    [2.165064]
+    """
 
     flow: Any
     vary: str
@@ -199,6 +230,9 @@ def critical(flow: "Flow", vary: str, *, span: tuple[float, float] | None = None
     >>> point = critical(Film(slope_deg=45.0), "Re", span=(0.5, 5.0))
     >>> f"{point.value:.9f} at k = {point.k:g}"
     '1.250000000 at k = 0'
+
+    `span` and the value have the units of the parameter, `search` and k are in 1/L. Raises ParameterError for what is
+    no flow, parameter or range.
     """
     strict, long_wave = check_flag("strict", strict), check_flag("long_wave", long_wave)
     (point,) = critical_sweep([check_flow(flow)], vary, span=span, search=search, long_wave=long_wave,
@@ -270,6 +304,14 @@ def neutral_curve(flow: "Flow", vary: str, k: "ArrayLike", *, span: tuple[float,
 
     A wavenumber without such a value keeps one point without numbers, whose status says so. What is found at one does
     not depend on the others.
+
+    `k` (points,) is in 1/L, values and `span` have the units of the parameter. Raises ParameterError for what is no
+    flow, parameter, wavenumber or range.
+
+    >>> from stability import flows
+    >>> curve = neutral_curve(flows.Poiseuille(), "Re", [1.02054744928533], span=(5700.0, 5900.0))
+    >>> f"{curve.points[0].value:.4f}"  # the nose of the curve: Orszag (1971) has 5772.22
+    '5772.2218'
     """
     return joined(list(neutral_parts(flow, vary, k, span=span, tolerance=tolerance, max_degree=max_degree)))
 

@@ -47,6 +47,15 @@ class Optimum(Record):
 
     `status` is "resolved" or says why there is none; `k_max`, `growth_rate`, `phase_speed` and
     `error` (of k_max) belong to the first and raise NotResolved if there is none.
+
+    `flow` is what was asked about, `maxima` are `Maximum` records with `k`, `error`, `growth_rate`, `mode` and
+    `status`; `settings` has search, mode and tolerance. Units: `k_max` and `error` 1/L, `growth_rate` V/L,
+    `phase_speed` V.
+
+    >>> from stability import flows, k_max
+    >>> best = k_max(flows.Dune())
+    >>> f"{best.k_max:.7f} {best.growth_rate:.7f} {best.phase_speed:.4f}", best.error < 1e-10, best.status
+    ('0.8492020 0.2390205 1.0151', True, 'resolved')
     """
 
     flow: Any
@@ -58,24 +67,29 @@ class Optimum(Record):
 
     @property
     def best(self) -> Maximum:
+        """The largest of the `maxima`; raises NotResolved if there is none."""
         if not self.maxima:
             raise NotResolved(naming(self.flow, self.status))
         return self.maxima[0]
 
     @property
     def k_max(self) -> float:
+        """Its wavenumber, 1/L."""
         return self.best.k
 
     @property
     def error(self) -> float:
+        """Bound of the absolute error of `k_max`, 1/L."""
         return self.best.error
 
     @property
     def growth_rate(self) -> float:
+        """The largest growth rate, V/L."""
         return self.best.growth_rate
 
     @property
     def phase_speed(self) -> float:
+        """The phase speed at `k_max`, V."""
         return self.best.mode.phase_speed
 
     def panels(self) -> tuple[Panel, ...]:
@@ -119,6 +133,9 @@ class Optima(Record):
     >>> found = Optima(bed, "Re", tuple(k_max_sweep(replace(bed, Re=Re) for Re in (1.0, 10.0))))
     >>> [f"{optimum.k_max:.6f}" for optimum in found.optima]
     ['0.584606', '0.849202']
+
+    `flow`, `over` and `method` are what was asked for, `optima` (flows,) the answers. Units are those of `Optimum`; an
+    optimum without maxima raises NotResolved when it is asked for its numbers, rows hold None there.
     """
 
     flow: Any
@@ -202,6 +219,13 @@ def k_max(flow: "Flow", search: tuple[float, float] | None = None, mode: str | N
     reaches to waves much shorter than the layers, and for a surface mode its lower end moves down until growth is a
     power of k. Only maxima with positive growth rate count: a flow that decays everywhere has none. Raises
     NotResolved if there is none; with strict=False the record says so in `status`.
+
+    Wavenumbers are in 1/L, growth rates in V/L. Raises ParameterError for what is no flow, range or mode.
+
+    >>> from stability import flows
+    >>> best = k_max(flows.Dune(shields=2.0, Re=10.0))
+    >>> f"{best.k_max:.7f}, growth rate {best.growth_rate:.7f}"
+    '0.8492020, growth rate 0.2390205'
     """
     strict = check_flag("strict", strict)
     (optimum,) = k_max_sweep([check_flow(flow)], search, mode, tolerance=tolerance, max_degree=max_degree)

@@ -34,6 +34,8 @@ def load(path: Any) -> Stored:
     >>> relation.to_csv("/tmp/relation.csv")
     >>> load("/tmp/relation.csv") == relation
     True
+
+    Units are those of the columns, `stability.columns` explains them.
     """
     name = check_file_name(path, "load: path")
     content = _bytes(name, "load")

@@ -22,6 +22,14 @@ class Record:
 
     A result is a sequence of its rows: `len(result)`, `result[0]`, `result[-3:]`, `for row in result`; the name of a
     column gives that as an array, `result["growth_rate"]`.
+
+    `method` and `settings` say how it was computed. Units are those of the columns (`stability.columns`). Raises
+    KeyError, with the columns there are, for a name that is none.
+
+    >>> from stability import dispersion, flows
+    >>> result = dispersion(flows.Vortex(), [1.0, 2.0])
+    >>> len(result), result[-1]["k"], result["k"].tolist(), result.header()["flow"]
+    (2, 2.0, [1.0, 2.0], 'vortex')
     """
 
     flow: Any
@@ -84,6 +92,14 @@ class Record:
 
         Successive results on the same axes take successive colours. `line_options` are those of matplotlib's lines
         (color, linestyle, linewidth ...). Raises ParameterError, with the names there are, for another quantity.
+
+        >>> from matplotlib.figure import Figure
+        >>> from stability import dispersion, flows
+        >>> axes = Figure().add_subplot()
+        >>> for slope in 25.0, 35.0:
+        ...     _ = dispersion(flows.Vortex(slope_deg=slope), [0.1, 1.0]).plot(axes, "growth_rate", label=f"{slope:g}")
+        >>> len(axes.lines) >= 2
+        True
         """
         from . import plots
 
@@ -94,15 +110,34 @@ class Record:
         return header_of(self.flow, self.method, {**self.about(), **self.settings}, self.notes(), self.swept)
 
     def to_csv(self, path: Target) -> None:
-        """Write the rows as CSV, flow and parameters as comments; raises ParameterError where that cannot be done."""
+        """Write the rows as CSV, flow and parameters as comments; raises ParameterError where that cannot be done.
+
+        >>> from stability import dispersion, flows
+        >>> dispersion(flows.Vortex(), [1.0]).to_csv("one.csv")
+        >>> from pathlib import Path
+        >>> Path("one.csv").read_text().splitlines()[0]
+        '# flow: vortex'
+        """
         self._write(path, "to_csv", render("csv", self.header(), self.rows()).encode())
 
     def to_json(self, path: Target) -> None:
-        """Write header and rows as JSON; raises ParameterError where that cannot be done."""
+        """Write header and rows as JSON; raises ParameterError where that cannot be done.
+
+        >>> from stability import dispersion, flows, load
+        >>> dispersion(flows.Vortex(), [1.0]).to_json("one.json")
+        >>> load("one.json").header()["mode"]
+        'surface'
+        """
         self._write(path, "to_json", render("json", self.header(), self.rows()).encode())
 
     def to_netcdf(self, path: Target) -> None:
-        """Write the columns as netCDF 3, missing numbers as nan; raises ParameterError where that cannot be done."""
+        """Write the columns as netCDF 3, missing numbers as nan; raises ParameterError where that cannot be done.
+
+        >>> from stability import dispersion, flows, load
+        >>> dispersion(flows.Vortex(), [1.0]).to_netcdf("one.nc")
+        >>> load("one.nc")["k"].tolist()
+        [1.0]
+        """
         from .netcdf import encode  # scipy.io is slow to import
 
         self._write(path, "to_netcdf", encode(self))

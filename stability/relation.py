@@ -42,6 +42,17 @@ class DispersionRelation(Eigenvalues, Record):
     `lost` maps wavenumbers at which the mode could not be followed to the reason (only with
     strict=False); they are left out of the arrays, not of the rows. `collisions` lists the mergers met on the
     way, `encounters` the near ones, `asked` all wavenumbers in the order asked for.
+
+    `flow` and `mode` are what was asked for, `modes` (points,) hold a `Mode` each, `method` and `settings` say how they
+    were computed. Units, L and V being the scales of the flow: `k` 1/L, `sigma`, `growth_rate` and `error` V/L, `slope`
+    and `phase_speed` V. Writing raises ParameterError where a file cannot be written, `["name"]` KeyError.
+
+    >>> from stability import dispersion, flows
+    >>> relation = dispersion(flows.Vortex(slope_deg=45.0), [1e-3, 2e-3])
+    >>> (relation.growth_rate / relation.k**2).round(5).tolist()  # thesis (4.25): -2/5
+    [-0.4, -0.4]
+    >>> len(relation), relation[0]["status"]
+    (2, 'resolved')
     """
 
     flow: Any
@@ -57,6 +68,7 @@ class DispersionRelation(Eigenvalues, Record):
 
     @property
     def k(self) -> np.ndarray:
+        """Wavenumbers of the modes (points,), 1/L."""
         return self._of_each("k")
 
     @property
@@ -143,6 +155,14 @@ def dispersion(flow: "Flow", k: "ArrayLike", mode: str | None = None, *, toleran
     mode that is followed is the same one at a wavenumber whatever else is asked for. `tolerance` bounds the error
     relative to |sigma|. Raises NotResolved or ModeLost; with strict=False the record says in `status` and `lost` what
     failed.
+
+    Wavenumbers are in 1/L, growth rates in V/L, L and V being the scales of the flow; ParameterError is raised for what
+    is no flow, wavenumber or mode.
+
+    >>> from stability import flows
+    >>> relation = dispersion(flows.Poiseuille(Re=1e4), 1.0)
+    >>> print(f"{relation.modes[0].c:.10f}")  # Orszag (1971): 0.23752649 + 0.00373967i
+    0.2375264888+0.0037396706j
     """
     strict = check_flag("strict", strict)
     parts = list(dispersion_parts(flow, k, mode, tolerance=tolerance, max_degree=max_degree))

@@ -45,7 +45,17 @@ class Slope:
 
 @dataclass(frozen=True, repr=False)
 class Sensitivities(Record):
-    """The slopes of the complex growth rate of a mode in every numeric parameter of its flow, and in "k"."""
+    """The slopes of the complex growth rate of a mode in every numeric parameter of its flow, and in "k".
+
+    `flow` and `mode` are what was asked about, `slopes` (parameters + 1,) are `Slope` records with `parameter`,
+    `value`, `slope`, `error` and `status`, k first; `settings` say how the mode was found. Units: V/L over those of the
+    parameter; an elasticity is a number. Writing raises ParameterError where a file cannot be written.
+
+    >>> from stability import dispersion, flows, sensitivities
+    >>> found = sensitivities(dispersion(flows.Vortex(), 1e-3).modes[0])
+    >>> {row["parameter"]: round(row["elasticity"], 4) for row in found[:2]}  # of -2 k^2 / (5 tan slope)
+    {'k': 2.0, 'slope_deg': -1.2092}
+    """
 
     flow: Any
     mode: Mode
@@ -56,6 +66,7 @@ class Sensitivities(Record):
 
     @property
     def k(self) -> float:
+        """Wavenumber of the mode, 1/L."""
         return self.mode.k
 
     @property
@@ -89,7 +100,15 @@ class Sensitivities(Record):
 
 
 def sensitivities(mode: Mode) -> Sensitivities:
-    """Return the slopes of a mode in k and in every numeric parameter, each at the others fixed, with error bars."""
+    """Return the slopes of a mode in k and in every numeric parameter, each at the others fixed, with error bars.
+
+    Each is complex, in V/L over the units of the parameter. Raises NotResolved where the mode cannot be refined.
+
+    >>> from stability import dispersion, flows
+    >>> in_k = sensitivities(dispersion(flows.Vortex(slope_deg=45.0), 1e-3).modes[0]).slopes[0]
+    >>> f"{in_k.slope.real:.3e}"  # of -2 k^2 / 5: -4 k / 5
+    '-8.000e-04'
+    """
     solver = Solver(mode.flow)
     refined = sharpened(solver, mode)
     error = _SAFETY * abs(refined.slope - mode.slope) + mode.slope_error

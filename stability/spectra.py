@@ -32,6 +32,15 @@ class Spectrum(Eigenvalues, Record):
 
     None is missing down to the last one, and none is there twice; or `status` says where that is not sure, and `doubt`
     why.
+
+    `flow`, `k` and `settings` are what was asked for, `modes` (modes,) hold a `Mode` each; arrays are (modes,). Units:
+    `sigma`, `growth_rate`, `error` V/L, `phase_speed` V, `condition` is a number. Writing raises ParameterError where a
+    file cannot be written.
+
+    >>> from stability import flows, spectrum
+    >>> found = spectrum(flows.Couette(Re=1000.0), 1.0, 2)
+    >>> sorted(found.phase_speed.round(6).tolist())  # in pairs, by symmetry
+    [-0.605343, 0.605343]
     """
 
     flow: Any
@@ -128,6 +137,12 @@ def spectrum(flow: "Flow", k: float, modes: int = 10, *, tolerance: float = TOLE
     Symmetry classes are solved apart, and the modes above the last one are counted by the argument principle (see
     `stability.listing`). Raises NotResolved if one of them is not resolved within `max_degree` or others may be
     missing; with strict=False the status says so instead.
+
+    `k` is in 1/L, growth rates in V/L. Raises ParameterError for what is no flow, wavenumber or number of modes.
+
+    >>> from stability import flows
+    >>> print(spectrum(flows.Poiseuille(Re=1e4), 1.0, 3).growth_rate.round(8))  # Orszag (1971): 0.00373967 leads
+    [ 0.00373967 -0.03516728 -0.03518658]
     """
     strict = check_flag("strict", strict)
     k, modes = check_wavenumber(k), check_integer(modes, "modes", 1, MOST)

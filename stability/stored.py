@@ -48,6 +48,15 @@ class Stored(Record):
 
     It equals a result, and another one of these, with the same header, columns and rows; notes do not count, which CSV
     does not keep, nor does the order of the columns.
+
+    `about_it` is the header as it was read, `table` the rows (dicts). Units are those of the columns that were written.
+    Asking for `flow` where the file names an unknown one gives its name; drawing three axes raises ParameterError.
+
+    >>> from stability import flows, load, spectrum
+    >>> spectrum(flows.Vortex(), 1.0, 2).to_json("two.json")
+    >>> stored = load("two.json")
+    >>> stored.flow, len(stored), stored["growth_rate"].shape
+    (Vortex(slope_deg=30.0, Fr2=0.1), 2, (2,))
     """
 
     about_it: Mapping[str, Any] = field(repr=False)

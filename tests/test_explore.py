@@ -17,7 +17,8 @@ import pytest
 from matplotlib.backend_bases import MouseButton, MouseEvent
 
 from stability import cli, dispersion, flows, k_max
-from stability.explore import FRAME, explore
+from stability.explore import FRAME, _spec_of, explore
+from stability.specs import parse_spec
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 
@@ -229,3 +230,8 @@ def test_in_a_browser(tmp_path):
         browser.wait()
         server.terminate()
         server.communicate()
+
+
+@pytest.mark.parametrize("k", [[0.5], [0.1, 1.0], [0.1, 0.3, 1.0], [1.0, 2.0, 3.0, 4.0], [0.1, 1 / 3, 7.0]], ids=str)
+def test_the_command_has_the_wavenumbers_that_are_shown(k):
+    np.testing.assert_allclose(parse_spec(_spec_of(np.array(k)), "--k"), k, rtol=1e-15)

@@ -88,6 +88,9 @@ def expand(flow_name: str, regime: str | None = None, order: Any = None, *, numb
 
     >>> expand("vortex", slope_deg=45).coefficient(2)
     -2/5
+
+    Growth rates and wavenumbers are in the scales of the flow, angles in degrees. Raises NoSuchFlow for an unknown flow
+    or regime, BadParameter for a parameter, value or order that it does not take.
     """
     flow = load(flow_name)
     known: dict[str, Parameter] = {parameter.name: parameter for parameter in flow.PARAMETERS}

@@ -21,13 +21,35 @@ def parameter(default: float, low: float | None = None, high: float | None = Non
 
     `closed` admits `low` itself as a value, `unbounded` admits inf (and -inf where there is no `low`). Neutral values
     are looked for in the range `look`. `symbol` is what figures call it, in TeX, if that is not its name.
+
+    Returns a dataclass field. Numbers are in the units that `meaning` names. The flow raises ParameterError for values
+    outside.
+
+    >>> from dataclasses import dataclass
+    >>> from stability.flows import Flow
+    >>> @dataclass(frozen=True)
+    ... class Calm(Flow):
+    ...     name = "calm"
+    ...     Re: float = parameter(100.0, 0, meaning="Reynolds number of depth and surface speed")
+    ...     def layers(self, names):
+    ...         return ()
+    ...     def conditions(self, edges, names):
+    ...         return ()
+    >>> Calm(Re=5).Re
+    5.0
     """
     return field(default=default, metadata={"low": low, "high": high, "meaning": meaning, "reason": reason,
                                             "closed": closed, "unbounded": unbounded, "look": look, "symbol": symbol})
 
 
 def choice(*options: str, meaning: str) -> Any:
-    """Declare a parameter that takes one of a few names; the first is the default."""
+    """Declare a parameter that takes one of a few names; the first is the default.
+
+    A name has no units. The flow raises ParameterError for any other one.
+
+    >>> choice("wall", "free", meaning="upper edge").default
+    'wall'
+    """
     return field(default=options[0], metadata={"options": options, "meaning": meaning})
 
 
@@ -49,6 +71,16 @@ class Flow:
     A subclass gives `layers(names)` and `conditions(edges, names)`, where `names` holds the symbols k,
     rate, its `surfaces` (amplitudes of displaced surfaces) and its `functions` of k; `edges.<layer>` is
     the pair of edges (s = 0, s = 1) with their fields v, w, t, n. See `stability.layer` for the scaling.
+
+    Lengths, velocities and stresses are in the scales that `scales` names. Raises ParameterError, in one line, for a
+    parameter outside its range and where the class contradicts itself.
+
+    >>> from stability import flows
+    >>> flow = flows.Film(Re=20.0)
+    >>> isinstance(flow, Flow), flow.described(), flow.has_surface_mode()
+    (True, {'Re': 20.0, 'slope_deg': 30.0, 'We': 0.0}, True)
+    >>> flow.long_wave(0.001), flow.state("fluid", 1.0, flow.layers(None)[0].profile(1.0))["U"]
+    (-0.002j, 1.0)
     """
 
     name: ClassVar[str]
@@ -86,17 +118,25 @@ class Flow:
         return sources.revive, (sources.ticket(type(self)), values)
 
     def evaluate(self, k: Any) -> dict[str, tuple[Any, Any, Any]]:
-        """Return {name: (value, slope in k, absolute error)} of the functions of k, arrays like k."""
+        """Return {name: (value, slope in k, absolute error)} of the functions of k, arrays like k.
+
+        Raises nothing; `k` in 1/L. An example is `stability/flows/dune.py`: `flow.evaluate(k)`.
+        """
         return {}
 
     def long_wave(self, k: Any) -> Any:
-        """Return the leading-order growth rate sigma of the slow surface mode as k -> 0."""
+        """Return the leading-order growth rate sigma of the slow surface mode as k -> 0.
+
+        Raises ParameterError where there is none; `k` in 1/L, sigma in V/L.
+        """
         raise ParameterError(f"{self.name} has no slow surface mode: ask for mode most-unstable")
 
     def state(self, layer: str, z: Any, base: Profile) -> dict[str, Any]:
         """Return what is shown of the base flow of a layer at the heights z (points,), {name: number or (points,)}.
 
         At least U, dU and shear_stress; others may follow, such as pressure and inertial_number.
+
+        Raises nothing; in the scales of the flow.
         """
         return {"U": base.U, "dU": base.dU, "shear_stress": base.stress * base.eta * base.dU}
 
@@ -118,7 +158,10 @@ class Flow:
         return self.bottom
 
     def left_out(self, edges: Any, names: Any, k: float, sigma: complex) -> dict[int, Any]:
-        """Return {index of a condition: what it lacks} where a fluid is cut, at growth rate sigma."""
+        """Return {index of a condition: what it lacks} where a fluid is cut, at growth rate sigma.
+
+        Raises nothing; `k` in 1/L, sigma in V/L. An example is `stability/flows/shear.py`.
+        """
         return {}
 
     def shortest(self) -> float:
@@ -129,6 +172,8 @@ class Flow:
         """Return which growth rates sigma (modes,) are those of modes that fall off where the fluid is cut.
 
         The others may belong to the continuous spectrum of an unbounded fluid, which a cut makes discrete.
+
+        Raises nothing; `k` in 1/L, sigma in V/L.
         """
         return abs(sigma) >= 0
 

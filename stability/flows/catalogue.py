@@ -16,7 +16,14 @@ _ELSEWHERE = "a flow of your own is named path/to/file.py:Class or package.modul
 
 
 class Catalogue(MutableMapping):
-    """Classes of flows by name; those of this package are imported when they are asked for."""
+    """Classes of flows by name; those of this package are imported when they are asked for.
+
+    `FLOWS` is the one there is; each class states its scales. Raises KeyError for a name it has not, `find` a
+    ParameterError.
+
+    >>> sorted(FLOWS)[:3], FLOWS["film"].__name__
+    (['couette', 'dune', 'film'], 'Film')
+    """
 
     def __init__(self, shipped: dict[str, str]) -> None:
         self._known: dict[str, str | type[Flow]] = dict(shipped)
@@ -54,6 +61,12 @@ def register(flow: "type[Flow]") -> "type[Flow]":
     """Make a class of flows known by its `name` in this Python; may be used as a decorator. Returns the class.
 
     Raises ParameterError where the class breaks its contract, or where the name belongs to another class.
+
+    Scales and units are those that the class states.
+
+    >>> from stability.flows import Couette
+    >>> register(Couette) is Couette  # known already, under the same name
+    True
     """
     from .base import check_class
 
@@ -72,6 +85,8 @@ def find(name: str) -> "type[Flow]":
 
     >>> find("vortex").title
     'longitudinal vortices in granular flow down an inclined plane'
+
+    Scales and units are those that the class states.
     """
     if name in FLOWS:
         return FLOWS[name]

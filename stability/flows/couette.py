@@ -12,6 +12,14 @@ class Couette(Flow):
     """Perturbations exp(i k x + sigma t) of U = z between plates at z = -1 and z = 1: Orr-Sommerfeld.
 
     Reflection in the centre turns the mode of wave speed c into that of -conj(c): modes come in pairs.
+
+    Source: the Orr-Sommerfeld equation; values recomputed in multi-precision. Scales: see `scales`. Raises
+    ParameterError for a parameter outside its range.
+
+    >>> from stability import spectrum
+    >>> mode = spectrum(Couette(Re=1000.0), 1.0, 1).modes[0]  # one of a pair
+    >>> f"{abs(mode.c.real):.12f} {mode.c.imag:.12f}"
+    '0.605342996005 -0.119230198438'
     """
 
     name: ClassVar[str] = "couette"

@@ -25,6 +25,13 @@ class Dune(Granular):
 
     Any friction law may take the place of (4.48): `law=Saturating(...)`, see `stability.flows.laws`. Where it has no
     yield stress, a rigid floor holds the creeping bed.
+
+    Source: Cawthorn's thesis, section 4.2. Scales: see `scales`. Raises ParameterError for a parameter outside its
+    range.
+
+    >>> from stability import dispersion
+    >>> print(f"{dispersion(Dune(), 1.0).sigma[0]:.12f}")  # 30-digit Frobenius series
+    0.234339971634-1.009151053991j
     """
 
     name: ClassVar[str] = "dune"

@@ -13,6 +13,12 @@ class Film(Flow):
     """Perturbations exp(i k x + sigma t) of U = 2 z - z^2 on 0 <= z <= 1: Orr-Sommerfeld with a free surface.
 
     Steady flow fixes gravity in these scales: its component down the slope is 2/Re, across it 2 cot(slope)/Re.
+
+    Source: Yih (1963), Benjamin (1957). Scales: see `scales`. Raises ParameterError for a parameter outside its range.
+
+    >>> from stability import dispersion
+    >>> f"{dispersion(Film(), 1e-5).phase_speed[0]:.6f}"  # twice the surface speed
+    '2.000000'
     """
 
     name: ClassVar[str] = "film"

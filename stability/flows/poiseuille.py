@@ -9,7 +9,14 @@ from .base import Flow, parameter
 
 @dataclass(frozen=True)
 class Poiseuille(Flow):
-    """Perturbations exp(i k x + sigma t) of U = 1 - z^2 between plates at z = -1 and z = 1: Orr-Sommerfeld."""
+    """Perturbations exp(i k x + sigma t) of U = 1 - z^2 between plates at z = -1 and z = 1: Orr-Sommerfeld.
+
+    Source: Orszag (1971). Scales: see `scales`. Raises ParameterError for a parameter outside its range.
+
+    >>> from stability import spectrum
+    >>> print(f"{spectrum(Poiseuille(Re=1e4), 1.0, 1).modes[0].c:.8f}")
+    0.23752649+0.00373967j
+    """
 
     name: ClassVar[str] = "poiseuille"
     title: ClassVar[str] = "plane Poiseuille flow between two plates"

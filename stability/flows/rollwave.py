@@ -20,6 +20,13 @@ class RollWave(Granular):
     The base flow is U = (2/3)(1 - (1-z)^{3/2}); the friction law enters through mu = tan(slope) and
     e0 = I mu'(I) = (mu2 - mu)(mu - mu1)/(mu2 - mu1), thesis (4.16). Any friction law may take its place,
     `law=Regularised(...)`: the inertial number is uniform.
+
+    Source: Forterre (2006); thesis, section 4.1. Scales: see `scales`. Raises ParameterError for a parameter outside
+    its range.
+
+    >>> from stability import dispersion
+    >>> print(f"{dispersion(RollWave(), 1e-5).phase_speed[0]:.6f}")  # 5/2 of the mean speed 2/5
+    1.000000
     """
 
     friction = Saturating

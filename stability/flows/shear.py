@@ -32,6 +32,13 @@ class Shear(Flow):
     where U has become constant. Beyond, vorticity falls like exp(-lambda z), lambda^2 = k^2 + Re (sigma + i k U), and w
     without it like exp(-k z), which the conditions at the cut contain exactly. Vorticity is set to 0 there: what that
     leaves out joins the error bar.
+
+    Source: Orszag (1971) for the walls; Drazin and Reid for unbounded shear layers. Scales: see `scales`. Raises
+    ParameterError for a parameter outside its range.
+
+    >>> from stability import spectrum
+    >>> print(f"{spectrum(Shear('poiseuille', Re=1e4), 1.0, 1).modes[0].c:.8f}")
+    0.23752649+0.00373967j
     """
 
     name: ClassVar[str] = "shear"

@@ -13,6 +13,14 @@ class TwoLayerCouette(Flow):
 
     With viscosity ratio m and depth ratio n (lower over upper) the shear rates are 1/(m+n) below and
     m/(m+n) above the interface, which moves at n/(m+n).
+
+    Source: Yih (1967); Charru and Hinch (2000). Scales: see `scales`. Raises ParameterError for a parameter outside its
+    range.
+
+    >>> from stability import dispersion
+    >>> flow = TwoLayerCouette()
+    >>> bool(abs(dispersion(flow, 1e-4).sigma[0] / flow.long_wave(1e-4) - 1) < 1e-3)
+    True
     """
 
     name: ClassVar[str] = "two_layer_couette"

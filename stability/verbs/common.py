@@ -7,6 +7,7 @@ from math import degrees
 from pathlib import Path
 
 from ..checks import as_number
+from ..columns import explained
 from ..errors import ParameterError
 from ..flows import FLOWS, find
 from ..flows.base import allowed, check_flow, numeric
@@ -43,7 +44,7 @@ def add_bare_verb(verbs, name, run, example, *options):
     """Add a verb that takes a flow, its parameters and `options`, and writes no result."""
     summary = VERBS[name]
     verb = verbs.add_parser(name, help=summary, description=summary[0].upper() + summary[1:] + ".",
-                            epilog=f"example: {example}", add_help=False,
+                            epilog=f"{explained(name)}\n\nexample: {example}".lstrip(), add_help=False,
                             usage=f"stability {name} FLOW [options]")
     verb.add_argument("flow", metavar="FLOW", help=FLOW)
     for option in options:
