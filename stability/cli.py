@@ -84,7 +84,7 @@ class _Parser(argparse.ArgumentParser):
     """Errors as exceptions; no value is given twice; examples in one line, to be copied."""
 
     def __init__(self, **options):
-        from .verbs.common import Once
+        from .verbs.once import Once
 
         super().__init__(formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False, **options)
         for action in (None, "store"):

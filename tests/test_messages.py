@@ -1,5 +1,8 @@
 """What the command line says to a slip: what was meant, and what would do."""
 
+import subprocess
+import sys
+
 import pytest
 
 from stability.cli import main
@@ -39,3 +42,13 @@ def test_what_grows_at_every_value_says_so(capsys):
     assert main(["critical", "film", "--vary", "Re", "--slope-deg", "120", "--range", "1:3"]) in (0, 3)
     out = capsys.readouterr().out
     assert "unstable at every Re from 1 to 3" in out
+
+
+@pytest.mark.parametrize("words", [("--help",), ("--version",), ("dance",), (), ("dispersion", "--nonsense")], ids=str)
+def test_what_needs_no_numerics_imports_none(words):
+    code = ("import sys; from stability.cli import main\n"
+            f"try: main({list(words)!r})\nexcept SystemExit: pass\n"
+            "print('numpy' in sys.modules or 'scipy' in sys.modules, file=sys.stderr)")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    loaded = done.stderr.splitlines()[-1]
+    assert loaded == str(words[:1] == ("dispersion",))

@@ -18,6 +18,7 @@ from ..specs import parse_spec
 from ..status import INTERRUPTED, is_settled
 from ..streams import output_closed, say
 from . import VERBS
+from .once import NUMBER
 from .plotting import look_of, plot_options
 from .progress import Bar
 
@@ -30,9 +31,6 @@ _PLOTS = (".png", ".pdf", ".svg")
 FLOW = f"one of {', '.join(FLOWS)}, or your own: path/to/file.py:Class or package.module:Class"
 LAW = ("friction law: linear, saturating, regularised, power, or your own: path/to/file.py:Class; its parameters are "
        "listed by: --law NAME --help")
-_NUMBER = "V"  # metavar of a numeric parameter of a flow
-_JOIN = "join values with commas"
-_REMEDIES = {"SPEC": _JOIN, "NAME=SPEC": f"{_JOIN}, and sweep several parameters with: stability map"}  # by metavar
 
 
 def add_verb(verbs, name, run, example, *options):
@@ -61,24 +59,6 @@ def _output_options(verb):
     verb.add_argument("-o", "--output", metavar="FILE",
                       help="write there instead of standard output; .csv, .json and .nc (netCDF) in that form")
     plot_options(verb)
-
-
-class Once(argparse.Action):
-    """Store a value, and in `given` that it was given: twice is refused, or the first value would get lost."""
-
-    def __call__(self, parser, namespace, values, option_string=None):
-        if self.dest in namespace.given:
-            raise ParameterError(f"{option_string}: given twice, with {getattr(namespace, self.dest)!r} and "
-                                 f"{values!r}; {self._remedy(parser, getattr(namespace, self.dest), values)}")
-        setattr(namespace, self.dest, values)
-        namespace.given |= {self.dest}
-
-    def _remedy(self, parser, *values):
-        if self.metavar == _NUMBER:
-            known = [option for option in ("--over", "--each") if option in parser._option_string_actions]
-            sweep = known[0] if known else "stability map --over"
-            return f"sweep it with: {sweep} {self.dest.partition(' ')[2]}={','.join(values)}"
-        return _REMEDIES.get(str(self.metavar), "give it once")
 
 
 def _add_parameters(verb, words):
@@ -114,7 +94,7 @@ def _flow_named(verb, words):
 
 
 def _metavar(item):
-    return _NUMBER if numeric(item) else "FILE" if "table" in item.metadata else "NAME"
+    return NUMBER if numeric(item) else "FILE" if "table" in item.metadata else "NAME"
 
 
 def _law_named(words):
