@@ -61,6 +61,7 @@ COLUMNS = {
     "tangent_viscosity": Column("derivative of the shear stress with respect to the shear rate", "S L/V"),
     "pressure": Column("pressure of the base flow", "S"),
     "inertial_number": Column("inertial number of the base flow", "see the notes of the flow"),
+    "angular_velocity": Column("angular velocity of the base flow", "V/L"),
     "method": Column("method of computation", ""),
     "setting": Column("its resolution or tolerance", ""),
     "reported": Column("error that the method itself reports", "V/L"),
@@ -82,7 +83,7 @@ _NUMBER_OF_MAXIMA = Column("number of local maxima of the growth rate", "1")
 # The columns of each verb, in their order as far as it is one.
 BY_VERB = {
     "base": ("layer", "z", "U", "dU", "shear_stress", "viscosity", "tangent_viscosity", "pressure", "inertial_number",
-             "error", "status"),
+             "angular_velocity", "error", "status"),
     "spectrum": ("k", "growth_rate", "phase_speed", "error", "data_error", "degree", "condition", "status"),
     "dispersion": (PARAMETERS, "k", "growth_rate", "phase_speed", "error", "data_error", "degree", "nodes", "status"),
     "kmax": (PARAMETERS, "k_max", "growth_rate", "phase_speed", "error", "data_error", "growth_data_error", "maxima",

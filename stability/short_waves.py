@@ -36,6 +36,13 @@ class WellPosedness:
     Arrays have shape (points,), layer after layer from below: `layer` name, `height` above its lower
     edge, `C`, `short_waves` = largest lambda / k^2 and `ill` = whether it is positive. `strips` are the
     ill-posed parts.
+
+    `flow` is what was asked about. Units: `height` L, `C` a number, `short_waves` V L. Raises nothing.
+
+    >>> from stability import flows
+    >>> found = well_posedness(flows.RollWave(slope_deg=32.6), 3)
+    >>> found.ill_posed, found.C.shape, len(found.strips)
+    (True, (3,), 1)
     """
 
     flow: Any
@@ -48,6 +55,7 @@ class WellPosedness:
 
     @property
     def ill_posed(self):
+        """Whether short waves grow without bound anywhere."""
         return bool(self.strips)
 
 
@@ -58,6 +66,9 @@ def well_posedness(flow, points=POINTS):
     >>> from stability import flows
     >>> well_posedness(flows.RollWave(slope_deg=28.0)).ill_posed
     False
+
+    In the scales of the flow: heights in L, the growth of short waves over k^2 in V L. Raises ParameterError where the
+    flow has no waves of its own.
     """
     parts, strips = [], []
     for layer in flow.layers(numbers(flow)):

@@ -9,6 +9,7 @@ import pytest
 from scipy.io import netcdf_file
 
 from stability import flows, netcdf
+from stability.base import base_flow
 from stability.cli import main
 from stability.columns import BY_VERB, COLUMNS, DEGREES, PARAMETERS, column, known
 from stability.compare import Comparison, Measurement, Reference
@@ -46,6 +47,11 @@ def test_every_column_of_maps_is_explained(tmp_path, options):
     target = tmp_path / "map.json"
     main(["map", "dune", *options.split(), "-o", str(target), "--quiet", "--workers", "1"])
     assert missing(json.loads(target.read_text())["rows"][0], "map", "dune") == []
+
+
+def test_every_column_of_every_base_flow_is_explained():
+    for name, flow in flows.FLOWS.items():
+        assert missing(base_flow(flow(), 3)[0], "base", name) == []
 
 
 def test_every_column_of_a_comparison_is_explained():

@@ -22,8 +22,8 @@ from stability import (
     optimum,
     record,
     sensitivity,
+    short_waves,
     stored,
-    wellposed,
 )
 
 UNITS = re.compile(r"\b(scales?|units?|1/L|V/L|columns?|degrees)\b", re.I)
@@ -36,9 +36,9 @@ RECORDS = {"DispersionRelation": stability.DispersionRelation, "Mode": stability
            "NeutralCurve": neutral.NeutralCurve, "NeutralSweep": neutral.NeutralSweep,
            "Sensitivities": sensitivity.Sensitivities, "Map": maps.Map, "BaseFlow": base.BaseFlow,
            "Stored": stored.Stored, "Record": record.Record, "Comparison": compare.Comparison,
-           "WellPosedness": wellposed.WellPosedness, "Expansion": asymptotics.Expansion}
+           "WellPosedness": short_waves.WellPosedness, "Expansion": asymptotics.Expansion}
 FUNCTIONS = {"base_flow": base.base_flow, "explore": explore.explore, "compare": compare.compare,
-             "well_posedness": wellposed.well_posedness, "energy": energy.energy, "Energy": energy.Energy,
+             "well_posedness": short_waves.well_posedness, "energy": energy.energy, "Energy": energy.Energy,
              "condition_numbers": energy.condition_numbers, "column": columns.column, "known": columns.known,
              "explained": columns.explained, "FLOWS": type(flows.FLOWS)}
 

@@ -23,6 +23,13 @@ class Annulus(Steady):
 
     The torque is mu R^2 P = mu1 Ry^2, the centrifugal pressure P' = R Omega^2, the shear rate
     R Omega' = -Gamma I sqrt(P), with P = 1 and Omega = 0 at Ry.
+
+    Scales: see `scales`. A base flow alone: waves raise ParameterError, as do parameters outside their range.
+
+    >>> from stability.base import base_flow
+    >>> profiles = base_flow(Annulus(), 3)
+    >>> profiles.z.round(12).tolist(), abs(float(profiles.U[-1])) < 1e-12  # at rest beyond the yield radius
+    ([1.0, 1.05, 1.1], True)
     """
 
     name: ClassVar[str] = "annulus"

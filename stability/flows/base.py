@@ -77,7 +77,7 @@ class Flow:
 
     >>> from stability import flows
     >>> flow = flows.Film(Re=20.0)
-    >>> isinstance(flow, Flow), flow.described(), flow.has_surface_mode()
+    >>> isinstance(flow, Flow), flow.stated(), flow.has_surface_mode()
     (True, {'Re': 20.0, 'slope_deg': 30.0, 'We': 0.0}, True)
     >>> flow.long_wave(0.001), flow.state("fluid", 1.0, flow.layers(None)[0].profile(1.0))["U"]
     (-0.002j, 1.0)

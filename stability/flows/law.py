@@ -38,6 +38,14 @@ class Law:
     """A friction law mu(I), with its derivative and its inverse; arguments are numbers or arrays.
 
     `breaks` are the inertial numbers at which its slope jumps.
+
+    Friction and the inertial number are numbers without units. Raises ParameterError for a parameter outside its range,
+    for friction that no inertial number has, and where a law contradicts itself.
+
+    >>> from stability.flows import Linear
+    >>> law = Linear(mu1=0.4, b=1.0)
+    >>> isinstance(law, Law), law.mu(0.5), round(float(law.inverse(0.6)), 12), law.range
+    (True, 0.6000000000000001, 0.5, (0.4, inf))
     """
 
     name: ClassVar[str]

@@ -17,7 +17,13 @@ _CLOSE = 1e-12  # relative difference of friction coefficients that is rounding
 
 @dataclass(frozen=True)
 class Linear(Law):
-    """mu = mu1 (1 + b I): thesis (4.48)."""
+    """mu = mu1 (1 + b I): thesis (4.48).
+
+    All numbers are without units. Raises ParameterError for a parameter outside its range, and for friction below mu1.
+
+    >>> Linear(mu1=0.4, b=2.0).mu(0.5)
+    0.8
+    """
 
     name: ClassVar[str] = "linear"
     title: ClassVar[str] = "mu1 (1 + b I), thesis (4.48)"
@@ -49,7 +55,14 @@ class Linear(Law):
 
 @dataclass(frozen=True)
 class Saturating(Law):
-    """mu = mu1 + (mu2 - mu1) I / (I0 + I): thesis (1.11), Jop, Forterre & Pouliquen (2005). Defaults: glass beads."""
+    """mu = mu1 + (mu2 - mu1) I / (I0 + I): thesis (1.11), Jop, Forterre & Pouliquen (2005). Defaults: glass beads.
+
+    All numbers are without units. Raises ParameterError for a parameter outside its range, for mu2 below mu1, and for
+    friction not between them.
+
+    >>> Saturating(mu1=0.4, mu2=0.6, I0=0.3).mu(0.3)  # half-way
+    0.5
+    """
 
     name: ClassVar[str] = "saturating"
     title: ClassVar[str] = "mu1 + (mu2 - mu1) / (1 + I0/I), thesis (1.11)"
@@ -87,7 +100,13 @@ class Saturating(Law):
 
 @dataclass(frozen=True)
 class PowerLaw(Law):
-    """mu = mu1 (1 + b I^n): at n = 1 the linear law; n = 1/2 is what discs in simulations of kinetic theory show."""
+    """mu = mu1 (1 + b I^n): at n = 1 the linear law; n = 1/2 is what discs in simulations of kinetic theory show.
+
+    All numbers are without units. Raises ParameterError for a parameter outside its range, and for friction below mu1.
+
+    >>> PowerLaw(mu1=0.5, b=1.0, n=0.5).mu(0.25)
+    0.75
+    """
 
     name: ClassVar[str] = "power"
     title: ClassVar[str] = "mu1 (1 + b I^n)"
@@ -125,6 +144,13 @@ class Regularised(Law):
     mu = sqrt(alpha / ln(A/I)) below I1, (mu1 I0 + mu2 I + mu_inf I^2)/(I0 + I) above it. I1 is where the upper branch
     turns well posed, C(I1) = 0, and A = I1 exp(alpha / mu(I1)^2) makes mu continuous; its slope jumps. There is no
     yield stress: grains creep wherever they are sheared. On the lower branch I mu'/mu = mu^2/(2 alpha).
+
+    All numbers are without units. Raises ParameterError for a parameter outside its range, and for friction that it
+    does not reach.
+
+    >>> law = Regularised()
+    >>> law.start, len(law.breaks), bool(law.mu(0.1) > law.mu(0.01))
+    (0.0, 1, True)
     """
 
     name: ClassVar[str] = "regularised"

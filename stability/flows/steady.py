@@ -105,6 +105,12 @@ class PlaneShear(Saturated):
     """Perturbations exp(i k x + sigma t) of grains sheared between rigid plates without gravity, U = z: thesis (2.1).
 
     Pressure and shear rate are uniform, and so are all coefficients. u = w = 0 on the plates.
+
+    Scales: see `scales`. Raises ParameterError for a parameter outside its range.
+
+    >>> from stability.base import base_flow
+    >>> base_flow(PlaneShear(), 3).U.tolist()
+    [0.0, 0.5, 1.0]
     """
 
     name: ClassVar[str] = "plane_shear"
@@ -135,6 +141,13 @@ class Plate(Saturated):
     The same base flow as the bed of `dune`, in units of the depth of grains z0 that weighs as much as the plate. The
     plate is rigid: a wave displaces it neither up nor along, u = w = 0 at z = 0. At the yield surface w = 0: where it
     moves is of second order, as U' = 0 there. Under a law without yield stress a rigid floor holds the creeping bed.
+
+    Scales: see `scales`. Raises ParameterError for a parameter outside its range.
+
+    >>> from stability.base import base_flow
+    >>> profiles = base_flow(Plate(), 3)
+    >>> float(profiles.U[0]), bool(profiles.U[2] > 0)
+    (0.0, True)
     """
 
     name: ClassVar[str] = "plate"
@@ -185,6 +198,12 @@ class Chute(Steady):
     """Grains that fall between rough vertical walls at x = -1 and 1, in the middle as a plug: thesis (2.16).
 
     The pressure is uniform (Janssen), p = plug / mu1, the shear stress x. z = 1 - |x| is the distance from a wall.
+
+    Scales: see `scales`. A base flow alone: waves raise ParameterError, as do parameters outside their range.
+
+    >>> from stability.base import base_flow
+    >>> float(base_flow(Chute(), 3).shear_stress[0])  # |x| at the wall
+    1.0
     """
 
     name: ClassVar[str] = "chute"
@@ -255,6 +274,12 @@ class Pile(Steady):
     """Flow on a deep pile between side walls, averaged across: mu(I) = tan(slope) - mu_wall h, h the depth: (2.28).
 
     Without yield stress grains creep down to where the walls bear all weight, tan(slope) = mu_wall h.
+
+    Scales: see `scales`. A base flow alone: waves raise ParameterError, as do parameters outside their range.
+
+    >>> from stability.base import base_flow
+    >>> float(base_flow(Pile(), 3).U[0])  # at rest below
+    0.0
     """
 
     name: ClassVar[str] = "pile"
