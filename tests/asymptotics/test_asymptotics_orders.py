@@ -281,7 +281,8 @@ class HeavierVortex(flows.Vortex):
 
 @pytest.mark.parametrize("coefficient", ["eta", "beta", "rho"])
 def test_one_percent_in_stability_fails(coefficient):
-    flow = type("Broken", (HeavierVortex,), {"coefficient": coefficient})(slope_deg=30.0, Fr2=0.1)
+    ours = {"coefficient": coefficient, "__module__": flows.Vortex.__module__}  # or it would be refused at once
+    flow = type("Broken", (HeavierVortex,), ours)(slope_deg=30.0, Fr2=0.1)
     with pytest.raises(OrderMismatch):
         check(flow, expand("vortex", slope_deg=30, Fr2=0.1), two_decades(0.5), correction=2)
 
@@ -298,6 +299,7 @@ def test_one_percent_in_the_bed_of_stability_fails(coefficient):
 
             return (replace(layer, profile=profile),)
 
+    Broken.__module__ = flows.Dune.__module__  # a flow from elsewhere is compared with its own limit: too early here
     _, regime, values, k, _ = CASES["shallow"]
     with pytest.raises(OrderMismatch):
         check(Broken(**values), expand("dune", regime, **values), k)
