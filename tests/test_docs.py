@@ -68,7 +68,19 @@ def test_tables_of_the_pages_are_whole():
     assert all(f"\n## {verb}\n" in columns_page() for verb in BY_VERB)
     assert all(f"\n## stability {verb}\n" in commands_page() for verb in VERBS)
     gallery = gallery_page(ROOT / "figures")
-    assert all(f"figures/{image.name})" in gallery for image in figures(ROOT / "figures"))
+    assert all(f'src="figures/{image.name}"' in gallery for image in figures(ROOT / "figures"))
+
+
+@pytest.mark.parametrize("name", sorted(TEXTS))
+def test_formulas_are_closed(name):
+    text = re.sub(r"```.*?```|`[^`]*`", "", TEXTS[name], flags=re.S)
+    displayed = re.findall(r"\$\$(.*?)\$\$", text, re.S)
+    inline = re.sub(r"\$\$.*?\$\$", "", text, flags=re.S)
+    assert "$$" not in inline
+    assert inline.count("$") % 2 == 0
+    for formula in (*displayed, *re.findall(r"\$(.*?)\$", inline, re.S)):
+        assert formula.count("{") == formula.count("}"), formula
+        assert formula.count(r"\left") == formula.count(r"\right"), formula
 
 
 def test_a_figure_without_its_script_is_refused(tmp_path):

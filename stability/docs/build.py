@@ -19,6 +19,7 @@ PAGES = Path(__file__).parent / "pages"
 PACKAGES = "stability", "asymptotics"
 _LEFT_OUT = re.compile(r"\.(docs|verbs|cli|__main__)\b")  # what is no library
 _ALL = "stability", "stability.flows", "asymptotics"  # import what they offer when it is asked for
+_HEADING = re.compile(r'<h1 class="modulename">.*?</h1>', re.S)  # pages of text have their own
 _LINK = re.compile(r'(?:href|src)="([^"#?]+)')
 
 
@@ -61,7 +62,8 @@ def build(target: Path) -> int:
     for name, module in {**modules, **texts}.items():
         page = target / f"{name.replace('.', '/')}.html"
         page.parent.mkdir(parents=True, exist_ok=True)
-        page.write_text(pdoc.render.html_module(module, modules), encoding="utf-8")
+        html = pdoc.render.html_module(module, modules)
+        page.write_text(_HEADING.sub("", html) if name in texts else html, encoding="utf-8")
     (target / "search.js").write_text(pdoc.render.search_index({**texts, **modules}), encoding="utf-8")
     _copy_figures(target / "figures")
     check_links(target)

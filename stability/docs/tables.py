@@ -81,7 +81,7 @@ def gallery_page(folder: Path) -> str:
         if not text:
             raise ValueError(f"{script}: has no docstring, which is its text in the gallery")
         title, _, rest = text.partition("\n")
-        parts += ["", f"## {image.stem}", "", f"**{title}**", "", f"![{image.stem}](figures/{image.name})", "",
+        parts += ["", f"## {image.stem}", "", f"**{title}**", "", f'<img src="figures/{image.name}" alt="{image.stem}" style="max-width: 100%">', "",
                   rest.strip(), "", f"[{script.name}](figures/{script.name}), "
                   f"[{image.stem}.csv](figures/{image.stem}.csv)"]
     return "\n".join(parts)

@@ -13,6 +13,8 @@ class Couette(Flow):
 
     Reflection in the centre turns the mode of wave speed c into that of -conj(c): modes come in pairs.
 
+    $$ (U - c) (w'' - k^2 w) - U'' w = (w'''' - 2 k^2 w'' + k^4 w) / (i k Re) $$
+
     Source: the Orr-Sommerfeld equation; values recomputed in multi-precision. Scales: see `scales`. Raises
     ParameterError for a parameter outside its range.
 

@@ -14,6 +14,8 @@ class Film(Flow):
 
     Steady flow fixes gravity in these scales: its component down the slope is 2/Re, across it 2 cot(slope)/Re.
 
+    $$ (U - c) (w'' - k^2 w) - U'' w = (w'''' - 2 k^2 w'' + k^4 w) / (i k Re) $$
+
     Source: Yih (1963), Benjamin (1957). Scales: see `scales`. Raises ParameterError for a parameter outside its range.
 
     >>> from stability import dispersion

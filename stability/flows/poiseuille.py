@@ -11,6 +11,8 @@ from .base import Flow, parameter
 class Poiseuille(Flow):
     """Perturbations exp(i k x + sigma t) of U = 1 - z^2 between plates at z = -1 and z = 1: Orr-Sommerfeld.
 
+    $$ (U - c) (w'' - k^2 w) - U'' w = (w'''' - 2 k^2 w'' + k^4 w) / (i k Re) $$
+
     Source: Orszag (1971). Scales: see `scales`. Raises ParameterError for a parameter outside its range.
 
     >>> from stability import spectrum

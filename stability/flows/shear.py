@@ -33,6 +33,8 @@ class Shear(Flow):
     without it like exp(-k z), which the conditions at the cut contain exactly. Vorticity is set to 0 there: what that
     leaves out joins the error bar.
 
+    $$ (U - c) (w'' - k^2 w) - U'' w = (w'''' - 2 k^2 w'' + k^4 w) / (i k Re) $$
+
     Source: Orszag (1971) for the walls; Drazin and Reid for unbounded shear layers. Scales: see `scales`. Raises
     ParameterError for a parameter outside its range.
 
