@@ -10,6 +10,8 @@ from ..flows import FLOWS
 from ..flows.base import allowed, numeric, span_of
 from ..verbs import VERBS
 
+_IMAGE = '<img src="figures/{0}" alt="{0}" style="max-width: 100%">'
+
 
 def flows_page() -> str:
     """Every flow: title, scales, and a table of its parameters."""
@@ -81,7 +83,7 @@ def gallery_page(folder: Path) -> str:
         if not text:
             raise ValueError(f"{script}: has no docstring, which is its text in the gallery")
         title, _, rest = text.partition("\n")
-        parts += ["", f"## {image.stem}", "", f"**{title}**", "", f'<img src="figures/{image.name}" alt="{image.stem}" style="max-width: 100%">', "",
+        parts += ["", f"## {image.stem}", "", f"**{title}**", "", _IMAGE.format(image.name), "",
                   rest.strip(), "", f"[{script.name}](figures/{script.name}), "
                   f"[{image.stem}.csv](figures/{image.stem}.csv)"]
     return "\n".join(parts)
