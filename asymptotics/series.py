@@ -111,7 +111,7 @@ class Expansion:
     def truncated(self, power: Any) -> "Expansion":
         """Only the terms up to `power`; the next one that does not vanish sets the order of the error.
 
-        Raises ValueError where `power` is no number.
+        Raises TypeError where `power` is no number.
         """
         power = sp.Rational(power)
         left_out = [p for p, c in self.terms.items() if p > power and c != 0]

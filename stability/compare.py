@@ -13,8 +13,10 @@ from typing import Any, ClassVar
 import numpy as np
 
 from .branch import Branch, surface_mode
+from .checks import check_options
 from .dense import finite_rates
 from .errors import ModeLost, ParameterError
+from .flows.base import check_flow
 from .output import Row
 from .panels import MARKED, THIN, Axis, Curve, Panel
 from .record import Record
@@ -142,9 +144,9 @@ def compare(flow, k, methods=None, report=None, *, known=None, points=None, budg
 def comparisons(flow, k, methods=None, report=None, *, known=None, points=None, budget=inf):
     """Yield the comparison of `compare` as it grows: before the first measurement, and after each."""
     begun = monotonic()
-    mode = one_thread(target)(flow, k)
+    chosen = [check_options("methods", name, tuple(METHODS)) for name in (METHODS if methods is None else methods)]
+    mode = one_thread(target)(check_flow(flow), k)
     known = known or reference(mode)
-    chosen = list(METHODS if methods is None else methods)
     total = sum(len(settings()) for settings, _ in (METHODS[name] for name in chosen))
     found = Comparison(flow, float(k), known, (), (), tuple(chosen))
     yield found

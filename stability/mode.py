@@ -140,7 +140,7 @@ class Mode(Eigenvalue):
 
         None where there is no derivative: at an infinite value. `sensitivity.sensitivities` adds error bars.
 
-        Units are V/L over those of the parameter. Raises ParameterError where the flow allows no neighbouring value.
+        Units are V/L over those of the parameter. Raises nothing: what cannot be found is None.
 
         >>> from stability import dispersion, flows
         >>> slopes = dispersion(flows.Film(), 1e-5).modes[0].sensitivity()

@@ -102,7 +102,8 @@ class Sensitivities(Record):
 def sensitivities(mode: Mode) -> Sensitivities:
     """Return the slopes of a mode in k and in every numeric parameter, each at the others fixed, with error bars.
 
-    Each is complex, in V/L over the units of the parameter. Raises NotResolved where the mode cannot be refined.
+    Each is complex, in V/L over the units of the parameter. A slope that cannot be found raises nothing:
+    its status says why.
 
     >>> from stability import dispersion, flows
     >>> in_k = sensitivities(dispersion(flows.Vortex(slope_deg=45.0), 1e-3).modes[0]).slopes[0]

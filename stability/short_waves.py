@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from .flows.base import check_flow
 from .rheology import condition, ill_posed, short_wave_growth
 from .threads import one_thread
 
@@ -67,11 +68,11 @@ def well_posedness(flow, points=POINTS):
     >>> well_posedness(flows.RollWave(slope_deg=28.0)).ill_posed
     False
 
-    In the scales of the flow: heights in L, the growth of short waves over k^2 in V L. Raises ParameterError where the
-    flow has no waves of its own.
+    In the scales of the flow: heights in L, the growth of short waves over k^2 in V L. Raises ParameterError for what
+    is no flow.
     """
     parts, strips = [], []
-    for layer in flow.layers(numbers(flow)):
+    for layer in check_flow(flow).layers(numbers(flow)):
         s = (1 - np.cos(np.pi * np.arange(points) / (points - 1))) / 2
         height = layer.height(s)
         ratio, alpha, eta, rho = _coefficients(layer, s)

@@ -125,3 +125,36 @@ def test_example(name, tmp_path, monkeypatch):
     result = runner.run(examples()[name], out=told.append)
     assert result.attempted > 0
     assert not result.failed, "".join(told)
+
+
+REFUSED = {
+    "well_posedness": lambda: short_waves.well_posedness("dune"),
+    "compare: flow": lambda: compare.compare("dune", 1.0),
+    "compare: methods": lambda: compare.compare(flows.Vortex(), 1.0, ["guess"]),
+    "base_flow": lambda: base.base_flow("dune"),
+    "explore": lambda: explore.explore("dune"),
+    "dispersion": lambda: stability.dispersion("dune", 1.0),
+    "spectrum": lambda: stability.spectrum("dune", 1.0),
+    "k_max": lambda: stability.k_max("dune"),
+    "critical": lambda: stability.critical("dune", "Re"),
+    "neutral_curve": lambda: stability.neutral_curve("dune", "Re", 1.0),
+    "parameter_map": lambda: stability.parameter_map("dune", {"Re": [1.0]}),
+    "load": lambda: stability.load("no such file.csv"),
+    "find": lambda: flows.find("no such flow"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_is_none_raises_what_the_reference_says(name):
+    with pytest.raises(stability.ParameterError):
+        REFUSED[name]()
+
+
+def test_expansions_raise_what_the_reference_says():
+    law = asymptotics.expand("vortex", order=2)
+    with pytest.raises(KeyError):
+        law.coefficient(17)
+    with pytest.raises(TypeError):
+        law.truncated("two")
+    with pytest.raises(ValueError, match="still depends"):
+        law.function()
