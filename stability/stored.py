@@ -66,13 +66,17 @@ class Stored(Record):
     def flow(self) -> Any:  # type: ignore[override]
         """The flow with the parameters of the header, its defaults for the swept ones; its name where it is unknown."""
         from .flows import FLOWS
+        from .flows.laws import find_law
 
         name = self.about_it["flow"]
         if name not in FLOWS:
             return name
-        known = {item.name for item in fields(FLOWS[name])}
         try:
-            return FLOWS[name](**{key: value for key, value in self.about_it.items() if key in known})
+            flow: Any = FLOWS[name]
+            if "law" in self.about_it:
+                flow = flow.under(find_law(str(self.about_it["law"])))
+            known = {item.name for item in fields(flow)}
+            return flow(**{key: value for key, value in self.about_it.items() if key in known})
         except ParameterError:  # the defaults of the swept ones do not go with the others
             return name
 
@@ -92,7 +96,7 @@ class Stored(Record):
 
     def header(self) -> dict[str, Any]:
         """Return the header of the result, parameters of a flow that is known apart."""
-        names = [] if isinstance(self.flow, str) else [item.name for item in fields(self.flow)]
+        names = [] if isinstance(self.flow, str) else ["law", *(item.name for item in fields(self.flow))]
         others = {key: value for key, value in self.about_it.items() if key not in _FIRST and key not in names}
         first = {key: self.about_it[key] for key in _FIRST if key in self.about_it}
         return {"flow": first.pop("flow"), "parameters": {key: self.about_it[key] for key in names

@@ -92,6 +92,7 @@ def test_flows_with_laws_are_values():
     assert isinstance(flow, Dune)
     assert {item.name for item in fields(flow)} == {"shields", "mu1", "mu2", "I0", "Re", "depth", "fluid"}
     assert flow.stated()["law"] == "saturating"
+    assert "law" not in flows.Dune().stated()
     assert Dune(law=Linear(0.4, 1.0)) == Dune()
     assert flow.with_law(Linear(0.4, 1.0)) == Dune(shields=1.4)
     assert repr(Dune()) == "Dune(shields=2.0, mu1=0.4, b=1.0, Re=10.0, depth=inf, fluid='closed-form')"
@@ -185,7 +186,7 @@ def test_laws_on_the_command_line(capsys, tmp_path):
     file.write_text(LAW_FILE)
     for words, expected in (
             (["--shields", "1.4", "--law", "saturating", "--mu2", "0.6", "--I0", "0.3"], "# law: saturating"),
-            (["--law", f"{file}:Root", "--c", "3"], "# law_source: law.py:Root"), ([], "# law: linear")):
+            (["--law", f"{file}:Root", "--c", "3"], "# law_source: law.py:Root"), ([], "# b: 1.0")):
         assert main(["dispersion", "dune", "--k", "1", "--csv", *words]) == 0
         assert expected in capsys.readouterr().out
     assert main(["kmax", "dune", "--shields", "1.3", "--law=saturating", "--over", "mu2=0.6,0.65",

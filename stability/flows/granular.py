@@ -79,8 +79,10 @@ class Granular(Flow, metaclass=_Scene):
         return {item.name: getattr(self, item.name) for item in fields(self)}
 
     def stated(self) -> dict[str, Any]:
-        """The parameters, with the law in front, and where it comes from if it is one's own."""
+        """The parameters, with the law in front where it is not the usual one, and where one's own comes from."""
         law = self.law
+        if "scene" not in vars(type(self)):
+            return super().stated()
         where = {f"law_{key}": value for key, value in sources.origin(type(law)).items()}
         return {"law": law.name, **where, **super().stated()}
 
