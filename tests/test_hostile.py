@@ -18,7 +18,8 @@ from stability.neutral import critical
 from stability.solver import Solver
 from stability.specs import parse_spec
 
-SEED, POINTS, TRUTH = 9, 30, 35
+SEED, POINTS, TRUTH = 9, 30, 4
+STEADY = {"chute", "pile", "annulus"}  # flows without waves
 few = settings(max_examples=60, deadline=None, derandomize=True)
 
 
@@ -27,10 +28,10 @@ def test_small_fuzz(flow):
     outcomes = [fuzz.attempt(point) for point in fuzz.points(flow, POINTS, SEED)]
     assert [str(outcome) for outcome in outcomes if outcome.failed] == []
     kinds = {outcome.kind for outcome in outcomes}
-    assert {"resolved", "ParameterError"} <= kinds
-    checked = list(fuzz.check_truth(outcomes, TRUTH // len(FLOWS), np.random.default_rng(SEED), 1.0))
+    assert {"ParameterError", *(() if flow in STEADY else ("resolved",))} <= kinds
+    checked = list(fuzz.check_truth(outcomes, TRUTH, np.random.default_rng(SEED), 1.0))
     assert [found for found in checked if found[2].startswith("failure")] == []
-    assert "holds" in {found[2] for found in checked}
+    assert not hasattr(fuzz.references, flow) or "holds" in {found[2] for found in checked}
 
 
 def test_small_fuzz_of_the_command_line():
