@@ -57,7 +57,10 @@ def solve_dune(flow, k, guess):
                            creep=getattr(flow, "creep", None), digits=30 if COUNT else 20)
 
 
-@pytest.mark.parametrize(("kind", "few", "seed"), [(Saturating, 2, 5), (Regularised, 1, 6)])
+_SLOW = pytest.mark.skipif(not COUNT, reason="minutes for each reference: with STABILITY_LAWS")
+
+
+@pytest.mark.parametrize(("kind", "few", "seed"), [(Saturating, 2, 5), pytest.param(Regularised, 1, 6, marks=_SLOW)])
 def test_dunes(kind, few, seed):
     check(dunes(kind, COUNT or few, seed), solve_dune)
 
