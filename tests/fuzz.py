@@ -275,8 +275,9 @@ def points(flow, count, seed):
 
 
 def budget_of(line):
-    """What a command line may take."""
-    return SEARCH_BUDGET if any(verb in line for verb in SEARCHES) else BUDGET
+    """What a command line may take, in CPU seconds: so much for each value of a list that is swept."""
+    values = max((word.count(",") + 1 for word in line if str(word).startswith("--over=")), default=1)
+    return values * (SEARCH_BUDGET if any(verb in line for verb in SEARCHES) else BUDGET)
 
 
 def truth(mode, budget=REFERENCE_BUDGET):
