@@ -1044,7 +1044,7 @@ def write_spectrum(path, numbers, seed):
 
 
 NUMBERS = {"kmax": {"film": 80, "two_layer_couette": 80, "rollwave": 40},
-           "critical": {"film": 60, "two_layer_couette": 60, "rollwave": 20},
+           "critical": {"film": 100, "two_layer_couette": 63, "rollwave": 45},
            "spectrum": dict.fromkeys(("vortex", "film", "two_layer_couette", "rollwave", "poiseuille", "couette"), 25)}
 WRITE = {"kmax": write_kmax, "critical": write_critical, "spectrum": write_spectrum}
 
