@@ -9,10 +9,10 @@ import numpy as np
 from .checks import check_integer
 from .errors import NotSmooth
 from .flows.base import check_flow
+from .layer import numbers
 from .output import Row
 from .panels import Axis, Curve, Panel
 from .record import Record
-from .short_waves import numbers
 from .smooth import Rough, fit
 from .status import RESOLVED
 

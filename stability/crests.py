@@ -17,10 +17,11 @@ import numpy as np
 from . import chebyshev
 from .branch import surface_branch
 from .errors import ModeLost
+from .layer import numbers
 from .listing import near_neutral, same
 from .memory import branch_of
 from .response import error_of_maximum
-from .short_waves import ill_posed_somewhere, numbers
+from .short_waves import ill_posed_somewhere
 from .status import is_resolved
 from .tracking import Walk
 

@@ -24,6 +24,7 @@ Without convection (U = 0, alpha = 0) all coefficients are real.
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -77,12 +78,12 @@ class Profile:
     stress: Any = 1.0
 
     def __post_init__(self) -> None:
-        for slope, name in _SLOPES.items():
+        for slope, name in SLOPES.items():
             if getattr(self, slope) is None and isinstance(getattr(self, name), int | float):
                 object.__setattr__(self, slope, 0.0)
 
 
-_SLOPES = {"dU": "U", "dg": "g"}
+SLOPES = {"dU": "U", "dg": "g"}
 
 
 @dataclass(frozen=True)
@@ -149,7 +150,7 @@ class Layer:
     def _series(self) -> dict[str, tuple[np.ndarray, float, float]]:
         """Series of U and g, what they leave out at most, and their size; only of those that are no Forms."""
         found = {}
-        for name in _SLOPES.values():
+        for name in SLOPES.values():
             try:
                 one = fit(lambda s, name=name: np.broadcast_to(
                     np.asarray(getattr(self._checked(s), name), dtype=float), (1, len(s))))
@@ -164,17 +165,17 @@ class Layer:
         What a series leaves out is noise: in the equations its slope acts like its last term would, without the steep
         ends of the latter, since the error of U' w integrates to that of U times the slope of w.
         """
-        missing = [slope for slope in _SLOPES if getattr(base, slope) is None]
+        missing = [slope for slope in SLOPES if getattr(base, slope) is None]
         if not missing:
             return base, {}
-        if any(isinstance(getattr(base, name), Form) for name in ("dz", *(_SLOPES[slope] for slope in missing))):
+        if any(isinstance(getattr(base, name), Form) for name in ("dz", *(SLOPES[slope] for slope in missing))):
             raise self._refusal(f"{missing[0]} must be given where heights depend on k")
-        found = {slope: self.slope(_SLOPES[slope], s) for slope in missing}
+        found = {slope: self.slope(SLOPES[slope], s) for slope in missing}
         with np.errstate(divide="ignore", invalid="ignore"):
             scale = {"dU": 1 / np.asarray(base.dz), "dg": np.ones(1)}
             values = {name: value * scale[name] for name, (value, _) in found.items()}
         noise = {name: cut * len(series) * np.abs(scale[name]) for name in missing
-                 for series, cut, _ in (self._series[_SLOPES[name]],) if cut}
+                 for series, cut, _ in (self._series[SLOPES[name]],) if cut}
         return replace(base, **values), noise
 
     def resolved(self, coefficients: Callable[..., Any], together: bool = False) -> Fit:
@@ -218,7 +219,7 @@ class Layer:
         base = self.profile(s)
         for name in _NAMES:
             value = getattr(base, name)
-            if value is None and name in _SLOPES or type(value) is float and abs(value) < np.inf:  # most are
+            if value is None and name in SLOPES or type(value) is float and abs(value) < np.inf:  # most are
                 continue
             for one in value.terms.values() if isinstance(value, Form) else (value,):
                 number = np.asarray(one)
@@ -264,6 +265,11 @@ def _unfit(name, value, s):
     if value.dtype.kind not in "fiub":
         return f"{name} is no number"
     return f"{name} has the shape {value.shape} at points of the shape {s.shape}"
+
+
+def numbers(flow):
+    """Stand-ins for the symbols that a flow's layers may use: heights only, which C does not depend on."""
+    return SimpleNamespace(k=1.0, rate=0.0, **dict.fromkeys((*flow.functions, *flow.surfaces), 1.0))
 
 
 def resolved(flow, layers, index, coefficients, together=False):

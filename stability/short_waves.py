@@ -4,12 +4,12 @@ In a layer whose short waves grow without bound (`stability.rheology`) the model
 """
 
 from dataclasses import dataclass
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
 from .flows.base import check_flow
+from .layer import numbers
 from .rheology import condition, ill_posed, short_wave_growth
 from .threads import one_thread
 
@@ -89,11 +89,6 @@ def ill_posed_somewhere(flow, points=POINTS):
     s = (1 - np.cos(np.pi * np.arange(points) / (points - 1))) / 2
     coefficients = (_coefficients(layer, s) for layer in flow.layers(numbers(flow)))
     return any(np.any(ill_posed(ratio, alpha)) for ratio, alpha, *_ in coefficients)
-
-
-def numbers(flow):
-    """Stand-ins for the symbols that a flow's layers may use: heights only, which C does not depend on."""
-    return SimpleNamespace(k=1.0, rate=0.0, **dict.fromkeys((*flow.functions, *flow.surfaces), 1.0))
 
 
 def _coefficients(layer, s):

@@ -7,7 +7,6 @@ this package are checked by its tests, those from elsewhere whenever a solver is
 from dataclasses import Field
 from functools import lru_cache
 from inspect import Parameter, signature
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,7 @@ from .. import chebyshev
 from ..checks import shown
 from ..errors import NotSmooth, ParameterError
 from ..forms import Form
-from ..layer import Layer, Profile
+from ..layer import SLOPES, Layer, Profile, numbers
 from . import sources
 
 OPTIONS = frozenset((  # of the command line, by their names there
@@ -36,9 +35,7 @@ _POSITIVE = "dz", "eta", "beta", "stress"
 _WAVENUMBERS = np.array([0.1, 1.0, 10.0])  # at which the slopes of functions of k are compared
 _STEP = 1e-4  # of their differences, relative
 _ALIKE = 1e-6  # relative difference of two slopes that are the same: differences of step 1e-4 are good to 1e-8
-_SLOPES = {"dU": "U", "dg": "g"}
 _DIGITS = 1e-9  # of the largest: disagreement of a slope with a series that is lost in the eighth digit of sigma
-_NOISE = 64 * np.finfo(float).eps  # of a series: its slope at degree n is good to n^2 times this
 
 
 # -- the class, as it is written --------------------------------------------------------------------------------------
@@ -119,8 +116,7 @@ def verify(flow: Any) -> None:
 
 @lru_cache(maxsize=256)
 def _verified(flow: Any) -> None:
-    names = SimpleNamespace(k=1.0, rate=0.0, **dict.fromkeys((*flow.functions, *flow.surfaces), 1.0))
-    layers = flow.layers(names)
+    layers = flow.layers(numbers(flow))
     if not isinstance(layers, tuple | list) or not layers or not all(isinstance(one, Layer) for one in layers):
         raise ParameterError(f"{flow.name}: layers(names) must return a tuple of Layers, (Layer(...),) "
                              f"(got {shown(layers)})")
@@ -147,7 +143,7 @@ def _check_layer(layer: Layer, bottom: float) -> float:
     base = layer.base(s)
     if not any(isinstance(getattr(base, name), Form) for name in ("dz", "U", "g")):
         _check_signs(base, s, lambda index: bottom + layer.height(s[index]))
-        for name in _SLOPES:
+        for name in SLOPES:
             if getattr(given, name) is not None and not isinstance(getattr(given, name), Form):
                 _check_slope(layer, given, name, s, bottom)
     return float(layer.height(np.array(1.0)))
@@ -169,14 +165,14 @@ def _check_signs(base: Profile, s: np.ndarray, height: Any) -> None:
 def _check_slope(layer: Layer, given: Profile, name: str, s: np.ndarray, bottom: float) -> None:
     """Compare dU or dg with the series of U or g."""
     value = np.broadcast_to(getattr(given, name), s.shape)
-    expected, uncertain = layer.slope(_SLOPES[name], s)
+    expected, uncertain = layer.slope(SLOPES[name], s)
     if name == "dU":
         expected, uncertain = expected / given.dz, uncertain / np.abs(given.dz)
     largest = max(np.abs(expected).max(), np.abs(value).max())
     off = np.abs(value - expected) - uncertain
     index = int(np.argmax(off))
     if off[index] > _DIGITS * largest:
-        of = f"the slope of {_SLOPES[name]} {'in z' if name == 'dU' else 'in s'}"
+        of = f"the slope of {SLOPES[name]} {'in z' if name == 'dU' else 'in s'}"
         raise ParameterError(f"{name} contradicts {of}: at z = {bottom + layer.height(s[index]):.4g} it is "
                              f"{value[index]:.6g}, the slope {expected[index]:.6g}"
                              + ("; leave it out: it follows" if name == "dU" else ""))
