@@ -11,10 +11,10 @@ import numpy as np
 from style import GREY, RED, main, plt
 
 from stability import flows
-from stability.mapplots import HATCHES, branch_changes, hatch, jumps, mesh, states
-from stability.maps import parameter_map
-from stability.pool import cores
-from stability.short_waves import well_posedness
+from stability.modes.short_waves import well_posedness
+from stability.output.mapplots import HATCHES, branch_changes, hatch, jumps, mesh, states
+from stability.studies.map import parameter_map
+from stability.studies.pool import cores
 
 Re = 0.1, 1e4
 GRIDS = {0.4: (60, 3.0), 0.7: (24, 2.0)}  # {mu1: (points along each axis, largest excess Shields ratio)}

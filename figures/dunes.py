@@ -14,7 +14,7 @@ from style import BLUE, GREY, RED, main, plt
 
 from asymptotics import expand
 from stability import dispersion, flows
-from stability.optimum import k_max_sweep
+from stability.studies.kmax import k_max_sweep
 
 BEDS = {"unbounded": flows.Dune(), "shallow": flows.Dune(depth=2.0)}
 LIMITS = {"unbounded": ("boundary-layer", "4/3"), "shallow": ("shallow", 2)}

@@ -11,9 +11,9 @@ import numpy as np
 from style import BLUE, GREY, main, plt
 
 from stability import dispersion, flows
-from stability.dense import finite_rates
-from stability.solver import Solver
-from stability.threads import one_thread
+from stability.modes.dense import finite_rates
+from stability.modes.solver import Solver
+from stability.numerics.threads import one_thread
 
 MU1 = (0.4, 0.7)
 DEGREES = (32, 48)

@@ -31,7 +31,7 @@ from style import BLUE, GREEN, GREY, ORANGE, RED, main, plt
 from asymptotics import expand
 from asymptotics.flows.dune import small_Re_maximum
 from stability import flows
-from stability.optimum import k_max_sweep
+from stability.studies.kmax import k_max_sweep
 
 BED = flows.Dune()
 DEPTHS = {np.inf: BLUE, 20.0: GREEN, 5.0: ORANGE, 2.0: RED}

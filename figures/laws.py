@@ -9,7 +9,7 @@ import numpy as np
 from style import BLUE, GREEN, RED, main, plt
 
 from stability.flows import Dune, Linear, Regularised, Saturating
-from stability.optimum import k_max_sweep
+from stability.studies.kmax import k_max_sweep
 
 LAWS = {"linear": (Linear(0.4, 1.0), BLUE), "saturating": (Saturating(0.4, 0.8, 1.0), GREEN),
         "regularised": (Regularised(0.4, 0.8, 1.0), RED)}

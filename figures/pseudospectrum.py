@@ -12,8 +12,8 @@ from scipy.linalg import schur
 from style import RED, main, plt
 
 from stability import flows, spectrum
-from stability.energy import condition_numbers, energy
-from stability.solver import Solver
+from stability.modes.energy import condition_numbers, energy
+from stability.modes.solver import Solver
 
 FLOW, K, DEGREE = flows.Poiseuille(Re=1e4), 1.0, 128
 CENTRE = 0.5 - 0.4j  # of the part of the plane of c that is drawn

@@ -11,11 +11,11 @@ import numpy as np
 from style import BLUE, GREY, RED, main, plt
 
 from stability import spectrum
-from stability.dense import finite_rates
 from stability.flows import Dune, Regularised, RollWave, Saturating
-from stability.solver import Solver
+from stability.modes.dense import finite_rates
+from stability.modes.solver import Solver
 from stability.status import is_resolved
-from stability.wellposed import well_posedness
+from stability.studies.wellposed import well_posedness
 
 LAWS = {"saturating": Saturating, "regularised": Regularised}
 DEGREES = (48, 96)

@@ -9,9 +9,9 @@ them by the next orders that `asymptotics expand plate` and its like derive. Run
 import numpy as np
 from style import BLUE, GREEN, GREY, RED, main, plt
 
-from stability.base import base_flow
 from stability.errors import ParameterError
 from stability.flows import Annulus, Chute, Plate, Saturating
+from stability.studies.base import base_flow
 
 MU1, I0 = 0.4, 0.3
 COLOURS = (BLUE, GREEN, RED)

@@ -21,10 +21,11 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 import competitors  # noqa: E402
 import references  # noqa: E402
 
-from stability import bvp, flows  # noqa: E402
-from stability.compare import Reference, compare, target, timed  # noqa: E402
-from stability.threads import one_thread  # noqa: E402
-from stability.wavy_wall import response  # noqa: E402
+from stability import flows
+from stability.bvp.problem import problem as bvp
+from stability.flows.wavy_wall import response  # noqa: E402
+from stability.numerics.threads import one_thread  # noqa: E402
+from stability.studies.compare import Reference, compare, target, timed  # noqa: E402
 
 POISEUILLE = -1j * (0.237526488820470107446579 + 0.00373967062297940993222j)
 FLOOR = 2.0**-53  # half a unit in the last place: errors below are drawn there

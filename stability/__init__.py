@@ -15,14 +15,14 @@ from .errors import ModeLost, NotResolved, ParameterError, StabilityError
 
 if TYPE_CHECKING:
     from . import flows
-    from .maps import parameter_map
-    from .mode import Mode
-    from .neutral import critical, neutral_curve
-    from .optimum import Optimum, k_max
-    from .reading import load
-    from .relation import DispersionRelation, dispersion
-    from .sensitivity import sensitivities
-    from .spectra import Spectrum, spectrum
+    from .modes.mode import Mode
+    from .output.reading import load
+    from .studies.dispersion import DispersionRelation, dispersion
+    from .studies.kmax import Optimum, k_max
+    from .studies.map import parameter_map
+    from .studies.neutral import critical, neutral_curve
+    from .studies.sensitivity import sensitivities
+    from .studies.spectrum import Spectrum, spectrum
 
 __all__ = [
     "DispersionRelation",
@@ -45,10 +45,19 @@ __all__ = [
 ]
 
 _LATER = {
-    "DispersionRelation": "relation", "Mode": "mode", "Optimum": "optimum", "Spectrum": "spectra",
-    "critical": "neutral", "dispersion": "relation", "flows": "flows", "k_max": "optimum", "load": "reading",
-    "neutral_curve": "neutral",
-    "parameter_map": "maps", "sensitivities": "sensitivity", "spectrum": "spectra",
+    "DispersionRelation": "studies.dispersion",
+    "Mode": "modes.mode",
+    "Optimum": "studies.kmax",
+    "Spectrum": "studies.spectrum",
+    "critical": "studies.neutral",
+    "dispersion": "studies.dispersion",
+    "flows": "flows",
+    "k_max": "studies.kmax",
+    "load": "output.reading",
+    "neutral_curve": "studies.neutral",
+    "parameter_map": "studies.map",
+    "sensitivities": "studies.sensitivity",
+    "spectrum": "studies.spectrum",
 }
 
 

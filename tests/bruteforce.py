@@ -3,7 +3,8 @@
     python tests/bruteforce.py kmax|critical|spectrum [--cases N] [--seed S] [--flow NAME] [-o FILE]
 
 They write the tables `tests/tables/bruteforce_*.csv`, row by row; case j of a flow depends on the seed and j alone.
-Nothing here is taken from the package: numpy and scipy only. `tests/test_bruteforce.py` compares with known values.
+Nothing here is taken from the package: numpy and scipy only. `tests/studies/test_bruteforce.py` compares them with
+known values.
 
 Normal mode exp(i k x + sigma t), growth rate Re sigma.
 

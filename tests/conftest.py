@@ -30,4 +30,4 @@ def pytest_collection_modifyitems(items):
 def without_memory(request, monkeypatch):
     """Each question of a test is answered anew, but where the test is about what is remembered."""
     if "remembered" not in request.fixturenames:
-        monkeypatch.setattr("stability.memory.KEPT", 0)
+        monkeypatch.setattr("stability.modes.memory.KEPT", 0)

@@ -12,8 +12,8 @@ import numpy as np
 from collocation import wave_speed
 
 from stability import spectrum
+from stability.equations.layer import Layer, Profile
 from stability.flows.base import Flow, parameter
-from stability.layer import Layer, Profile
 
 _COUNTS = 160, 224, 288, 384, 512, 640  # of collocation points
 _AGREE = 2e-15

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 from stability.cli import main
-from stability.columns import BY_VERB
+from stability.cli.verbs import VERBS
 from stability.docs.build import PAGES, ROOT, build, check_links
 from stability.docs.tables import columns_page, commands_page, figures, flows_page, gallery_page
 from stability.flows import FLOWS
-from stability.verbs import VERBS
+from stability.output.columns import BY_VERB
 
 TEXTS = {page.stem: page.read_text(encoding="utf-8") for page in PAGES.glob("*.md")}
 BIN = Path(sys.executable).parent

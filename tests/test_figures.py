@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from stability import flows
-from stability.optimum import k_max_sweep
+from stability.studies.kmax import k_max_sweep
 
 FIGURES = Path(__file__).parents[1] / "figures"
 

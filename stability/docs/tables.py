@@ -4,11 +4,11 @@ import ast
 from dataclasses import fields
 from pathlib import Path
 
-from ..cli import _parser
-from ..columns import BY_VERB, PARAMETERS, SCALES, column
+from ..cli.command import _parser
+from ..cli.verbs import VERBS
 from ..flows import FLOWS
 from ..flows.base import allowed, numeric, span_of
-from ..verbs import VERBS
+from ..output.columns import BY_VERB, PARAMETERS, SCALES, column
 
 _IMAGE = '<img src="figures/{0}" alt="{0}" style="max-width: 100%">'
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from .catalogue import FLOWS, find, register
 
 if TYPE_CHECKING:
-    from ..layer import Layer, Profile
+    from ..equations.layer import Layer, Profile
     from .annulus import Annulus
     from .base import Flow, choice, parameter
     from .couette import Couette
@@ -31,8 +31,8 @@ __all__ = ["FLOWS", "Annulus", "Chute", "Couette", "Dune", "Film", "Flow", "Law"
 _LATER = {
     "Annulus": ".annulus", "Chute": ".steady", "Pile": ".steady", "PlaneShear": ".steady", "Plate": ".steady",
     "Couette": ".couette", "Dune": ".dune", "Film": ".film", "Flow": ".base", "Law": ".law",
-    "Layer": "..layer", "Linear": ".laws", "PowerLaw": ".laws", "Regularised": ".laws", "Saturating": ".laws",
-    "Poiseuille": ".poiseuille", "Profile": "..layer", "RollWave": ".rollwave", "Shear": ".shear",
+    "Layer": "..equations.layer", "Linear": ".laws", "PowerLaw": ".laws", "Regularised": ".laws", "Saturating": ".laws",
+    "Poiseuille": ".poiseuille", "Profile": "..equations.layer", "RollWave": ".rollwave", "Shear": ".shear",
     "TwoLayerCouette": ".two_layer_couette", "Vortex": ".vortex", "choice": ".base", "parameter": ".base",
 }
 

@@ -7,9 +7,9 @@ from typing import ClassVar
 import numpy as np
 from numpy.polynomial import chebyshev as C
 
-from .. import chebyshev
+from ..equations.layer import Layer, Profile
 from ..errors import ParameterError
-from ..layer import Layer, Profile
+from ..numerics import chebyshev
 from .base import parameter
 from .steady import Steady
 
@@ -26,7 +26,7 @@ class Annulus(Steady):
 
     Scales: see `scales`. A base flow alone: waves raise ParameterError, as do parameters outside their range.
 
-    >>> from stability.base import base_flow
+    >>> from stability.studies.base import base_flow
     >>> profiles = base_flow(Annulus(), 3)
     >>> profiles.z.round(12).tolist(), abs(float(profiles.U[-1])) < 1e-12  # at rest beyond the yield radius
     ([1.0, 1.05, 1.1], True)

@@ -6,8 +6,8 @@ from math import inf, isfinite, isinf
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from ..checks import LARGEST, as_number, check_options, in_double_precision, shown
+from ..equations.layer import Profile
 from ..errors import ParameterError
-from ..layer import Profile
 from . import sources
 from .contract import check_body, verify
 
@@ -70,7 +70,7 @@ class Flow:
 
     A subclass gives `layers(names)` and `conditions(edges, names)`, where `names` holds the symbols k,
     rate, its `surfaces` (amplitudes of displaced surfaces) and its `functions` of k; `edges.<layer>` is
-    the pair of edges (s = 0, s = 1) with their fields v, w, t, n. See `stability.layer` for the scaling.
+    the pair of edges (s = 0, s = 1) with their fields v, w, t, n. See `equations.layer` for the scaling.
 
     Lengths, velocities and stresses are in the scales that `scales` names. Raises ParameterError, in one line, for a
     parameter outside its range and where the class contradicts itself.

@@ -20,9 +20,9 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import chebyshev as C
 
+from ..equations.layer import FIELDS, Layer, Profile
 from ..errors import ParameterError
-from ..layer import FIELDS, Layer, Profile
-from ..smooth import Rough, fit
+from ..numerics.smooth import Rough, fit
 from .law import Law
 
 _REST = 1e-8  # inertial number at which friction of a law with a yield stress is to rise linearly

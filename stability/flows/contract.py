@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from .. import chebyshev
 from ..checks import shown
+from ..equations.forms import Form
+from ..equations.layer import SLOPES, Layer, Profile, numbers
 from ..errors import NotSmooth, ParameterError
-from ..forms import Form
-from ..layer import SLOPES, Layer, Profile, numbers
+from ..numerics import chebyshev
 from . import sources
 
 OPTIONS = frozenset((  # of the command line, by their names there

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ..layer import Layer, Profile
+from ..equations.layer import Layer, Profile
 from .base import Flow, parameter
 
 

@@ -6,9 +6,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from .. import wavy_wall
-from ..layer import Layer, Profile
+from ..equations.layer import Layer, Profile
 from . import bed as beds
+from . import wavy_wall
 from .base import choice, parameter
 from .granular import Granular
 from .law import Law

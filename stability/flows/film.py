@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ..angles import cot_deg
-from ..layer import Layer, Profile
+from ..equations.layer import Layer, Profile
+from ..numerics.angles import cot_deg
 from .base import Flow, parameter
 
 

@@ -5,9 +5,9 @@ from fractions import Fraction
 from math import atan, degrees, radians, sqrt, tan
 from typing import ClassVar
 
-from ..angles import tan_deg
+from ..equations.layer import Layer, Profile
 from ..errors import ParameterError
-from ..layer import Layer, Profile
+from ..numerics.angles import tan_deg
 from .base import parameter
 from .granular import Granular
 from .laws import Saturating

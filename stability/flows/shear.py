@@ -7,14 +7,14 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from ..equations.layer import Layer, Profile
 from ..errors import NotSmooth, ParameterError
-from ..layer import Layer, Profile
-from ..measured import Table
-from ..smooth import Rough, fit
-from ..stretch import Stretch, limit, sheared, stretched
-from ..velocity import NAMES, Function, read
-from ..velocity_fit import smoothed
+from ..numerics.smooth import Rough, fit
 from .base import Flow, choice, parameter, table
+from .measured import Table
+from .stretch import Stretch, limit, sheared, stretched
+from .velocity import NAMES, Function, read
+from .velocity_fit import smoothed
 
 _SHOWN = 65  # heights at which a function's values are taken for its digest
 _FALLEN = 8.0  # exponent of the fall of vorticity up to a cut, below which a decaying mode is not known to be bound

@@ -12,11 +12,11 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.polynomial import chebyshev as C
 
-from ..angles import tan_deg
+from ..equations.forms import Form
+from ..equations.layer import Layer, Profile
 from ..errors import ParameterError
-from ..forms import Form
-from ..layer import Layer, Profile
-from ..smooth import Rough, fit
+from ..numerics.angles import tan_deg
+from ..numerics.smooth import Rough, fit
 from . import bed as beds
 from .base import parameter
 from .granular import Granular
@@ -108,7 +108,7 @@ class PlaneShear(Saturated):
 
     Scales: see `scales`. Raises ParameterError for a parameter outside its range.
 
-    >>> from stability.base import base_flow
+    >>> from stability.studies.base import base_flow
     >>> base_flow(PlaneShear(), 3).U.tolist()
     [0.0, 0.5, 1.0]
     """
@@ -144,7 +144,7 @@ class Plate(Saturated):
 
     Scales: see `scales`. Raises ParameterError for a parameter outside its range.
 
-    >>> from stability.base import base_flow
+    >>> from stability.studies.base import base_flow
     >>> profiles = base_flow(Plate(), 3)
     >>> float(profiles.U[0]), bool(profiles.U[2] > 0)
     (0.0, True)
@@ -201,7 +201,7 @@ class Chute(Steady):
 
     Scales: see `scales`. A base flow alone: waves raise ParameterError, as do parameters outside their range.
 
-    >>> from stability.base import base_flow
+    >>> from stability.studies.base import base_flow
     >>> float(base_flow(Chute(), 3).shear_stress[0])  # |x| at the wall
     1.0
     """
@@ -277,7 +277,7 @@ class Pile(Steady):
 
     Scales: see `scales`. A base flow alone: waves raise ParameterError, as do parameters outside their range.
 
-    >>> from stability.base import base_flow
+    >>> from stability.studies.base import base_flow
     >>> float(base_flow(Pile(), 3).U[0])  # at rest below
     0.0
     """

@@ -5,8 +5,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..angles import tan_deg
-from ..layer import Layer, Profile
+from ..equations.layer import Layer, Profile
+from ..numerics.angles import tan_deg
 from .base import Flow, parameter
 
 

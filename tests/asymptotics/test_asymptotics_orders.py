@@ -17,9 +17,10 @@ from scipy.integrate import quad
 from asymptotics import expand, fluid
 from asymptotics.flows import dune
 from asymptotics.limits import OrderMismatch, assert_order
-from stability import dispersion, flows, wavy_wall
+from stability import dispersion, flows
+from stability.equations.layer import Layer
+from stability.flows import wavy_wall
 from stability.flows.vortex import profile as vortex_profile
-from stability.layer import Layer
 
 SETS = 20
 POINTS = 9

@@ -14,9 +14,9 @@ import sympy as sp
 from asymptotics import fluid, linearise
 from asymptotics.flows import dune, vortex
 from stability import flows
+from stability.equations.layer import Profile, residuals
 from stability.flows import dune as stability_dune
 from stability.flows import vortex as stability_vortex
-from stability.layer import Profile, residuals
 
 zeta, rate, s0, height = sp.symbols("zeta rate s0 height", positive=True)
 k, sigma = linearise.k, linearise.sigma

@@ -8,8 +8,8 @@ import sympy as sp
 
 from asymptotics import assert_order, expand
 from asymptotics.limits import OrderMismatch
-from stability.base import base_flow
 from stability.flows import Annulus, Chute, Plate, RollWave, Saturating
+from stability.studies.base import base_flow
 
 mu1, mu2, I0, gamma, ratio = sp.symbols("mu1 mu2 I0 gamma lambda", positive=True)
 DELTA = np.geomspace(2e-4, 2e-2, 9)

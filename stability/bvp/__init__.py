@@ -1,0 +1,1 @@
+"""The thesis's method: the boundary-value problem, continued along k."""

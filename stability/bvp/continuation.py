@@ -1,0 +1,316 @@
+"""Continuation with `scipy.integrate.solve_bvp`: one boundary-value problem per point, the last solution its guess.
+
+This is how Cawthorn's thesis computes (4.1.4, 4.2.4); `bvp.thesis` has its own choice of problem. It is
+here to be compared with: `stability.dispersion` is faster and more accurate, and its error bar is sharper.
+"""
+
+from dataclasses import dataclass, field, replace
+from math import exp, log
+from typing import Any
+
+import numpy as np
+
+from ..checks import check_wavenumbers
+from ..errors import ModeLost, NotResolved
+from ..modes.crests import SEARCH
+from ..modes.eigenvalue import Eigenvalue, Eigenvalues
+from ..modes.solver import TOLERANCE
+from ..numerics.threads import one_thread
+from ..status import RESOLVED
+from .problem import Problem, solve
+
+_RESIDUALS = (1e-4, 1e-6, 1e-7, 1e-8)  # tolerances of solve_bvp tried in turn
+_STEP_NODES = 100  # a step that needs more than these beyond its mesh has a bad guess
+_START_NODES = 17
+_FIRST_STEP = 0.2  # in log of the parameter
+_LARGEST_STEP = 0.2
+_SMALLEST_STEP = 4e-3
+_CHANGE = 0.1  # largest relative difference between predictor and corrector
+_NUDGE = 1e-3  # in log of the parameter, for slopes
+_BEND = 0.07  # error of the trapezoidal rule for a step, relative to its largest slope
+_BEND_FLOOR = 1e-3
+_STEPS = 400
+_LONG_WAVE = 0.03  # agreement of the first mode with the long-wave limit
+_BRACKET_STEP = 0.25  # of the look for maxima, in log k
+_K_ACCURACY = 1e-7  # of the bounded minimisation, relative to k
+
+
+@dataclass(frozen=True)
+class Point(Eigenvalue):
+    """An eigenvalue found by solve_bvp.
+
+    `error` is the change of sigma when every mesh interval is halved; sigma is that of the finer mesh, in
+    error by about a fifteenth of it. It says nothing of a bias of the problem itself (delta, a cut fluid).
+    """
+
+    flow: Any
+    k: float
+    sigma: complex
+    error: float
+    nodes: int
+    unknowns: int
+    status: str
+
+
+@dataclass(frozen=True)
+class Continuation(Eigenvalues):
+    """Points along k or along a parameter; `lost` maps each value that was not reached to the reason."""
+
+    points: tuple
+    lost: dict = field(hash=False)
+
+    @property
+    def modes(self):
+        return self.points
+
+    @property
+    def k(self):
+        return self._of_each("k")
+
+
+
+def continue_in_k(flow, k, *, tolerance=TOLERANCE, residual=None, guess=None, setting=None):
+    """Follow the surface mode of a flow through wavenumbers k by solve_bvp: a `Continuation`.
+
+    Each point is refined until its error is below `tolerance` |sigma|, or solved once with solve_bvp's
+    tolerance `residual`. `guess` is sigma at the smallest k, for flows without a long-wave limit. `setting` maps k to
+    the flow that is solved (`thesis.thesis_setting`).
+    """
+    return _joined(steps_in_k(flow, k, tolerance=tolerance, residual=residual, guess=guess, setting=setting))
+
+
+def steps_in_k(flow, k, *, tolerance=TOLERANCE, residual=None, guess=None, setting=None):
+    """Yield the result of `continue_in_k` point by point, and at last what is lost."""
+    setting = setting or (lambda k: flow)
+    wavenumbers = np.unique(check_wavenumbers(k))
+    effort = _effort(tolerance, residual)
+    try:
+        walk = _Walk(lambda k: (setting(k), k), *_start(setting, wavenumbers[0], guess, effort[1][0]), effort)
+    except ModeLost as reason:
+        yield Continuation((), dict.fromkeys(wavenumbers.tolist(), str(reason)))
+    else:
+        yield from _walk_through(walk, wavenumbers.tolist())
+
+
+@one_thread
+def continue_in(flow, name, values, k, *, tolerance=TOLERANCE, residual=None):
+    """Follow the surface mode at fixed k through a monotone sequence of positive values of a parameter.
+
+    The first point is reached from the long-wave limit. Arguments and result as for `continue_in_k`; `lost`
+    has the parameter's values as keys.
+    """
+    values = [float(value) for value in values]
+    effort = _effort(tolerance, residual)
+    first = replace(flow, **{name: values[0]})
+    walk = _Walk(lambda k: (first, k), *_start(lambda k: first, k, None, effort[1][0]), effort)
+    try:
+        walk.to(k)
+    except ModeLost as reason:
+        return Continuation((), dict.fromkeys(values, str(reason)))
+    walk.move(lambda value: (replace(flow, **{name: value}), k), values[0])
+    return _joined(_walk_through(walk, values))
+
+
+@dataclass(frozen=True)
+class BoundedMaximum:
+    """The largest growth rate along k and where; `error` bounds the absolute error of k."""
+
+    k: float
+    error: float
+    mode: Point
+
+    @property
+    def growth_rate(self):
+        return self.mode.growth_rate
+
+
+@one_thread
+def bounded_maximum(flow, search=SEARCH, *, tolerance=TOLERANCE, residual=None, setting=None):
+    """Return the `BoundedMaximum` of the first maximum of growth met along k, by bounded minimisation.
+
+    What the thesis does with fminbnd: values only, so that k is known to the square root of the accuracy
+    of sigma. Raises NotResolved if growth rises to no maximum within `search`.
+    """
+    from scipy.optimize import minimize_scalar
+
+    setting = setting or (lambda k: flow)
+    effort = _effort(tolerance, residual)
+    walk = _Walk(lambda k: (setting(k), k), *_start(setting, search[0], None, effort[1][0]), effort)
+    wavenumbers = np.geomspace(*search, int(log(search[1] / search[0]) / _BRACKET_STEP) + 1)
+    growth = []
+    for k in wavenumbers:
+        growth.append(walk.to(float(k)).sigma.real)
+        if len(growth) > 2 and growth[-2] > max(0, growth[-3], growth[-1]):
+            break
+    else:
+        raise NotResolved(f"{flow}: growth has no positive maximum for k in [{search[0]:g}, {search[1]:g}]")
+    bracket = wavenumbers[len(growth) - 3], wavenumbers[len(growth) - 1]
+    found = minimize_scalar(lambda k: -walk.to(float(k)).sigma.real, bounds=bracket, method="bounded",
+                            options={"xatol": _K_ACCURACY * bracket[0]})
+    best = walk.point(float(found.x))
+    a, middle, c = (growth[i] for i in (-3, -2, -1))
+    curvature = abs(a - 2 * middle + c) / (log(bracket[1] / bracket[0]) / 2) ** 2
+    width = (2 * max(best.error, 1e-16 * abs(best.sigma)) / curvature) ** 0.5
+    return BoundedMaximum(best.k, float(best.k * (width + _K_ACCURACY)), best)
+
+
+def _effort(tolerance, residual):
+    """Accepted relative error of sigma, and the tolerances of solve_bvp to try for it."""
+    return (np.inf, (residual,)) if residual else (tolerance, _RESIDUALS)
+
+
+@one_thread
+def _start(setting, k, guess, residual):
+    """First solution and its k: at a k so small that the long-wave limit holds, or at the guess."""
+    for _ in range(12):
+        flow = setting(k)
+        sigma = flow.long_wave(np.array([k]))[0] if guess is None else guess
+        found = _cold(flow, k, sigma, residual)
+        if found and (guess is not None or abs(found.problem.width * found.rate / sigma - 1) < _LONG_WAVE):
+            return found, k
+        if guess is not None:
+            break
+        k = k / 4
+    raise ModeLost(f"{setting(k)}: solve_bvp finds no mode near the "
+                   f"{'long-wave limit' if guess is None else 'guess'} at k = {k:.3g}")
+
+
+def _cold(flow, k, sigma, residual):
+    """Solve with the rate held at the guess for the fields, then for all."""
+    problem = Problem(flow, k)
+    mesh = np.linspace(0, 1, _START_NODES)
+    parameters = np.zeros(max(1, len(flow.surfaces)), complex)
+    parameters[0] = sigma / problem.width
+    rough = solve(problem, mesh, np.zeros((problem.size, len(mesh)), complex), parameters, residual, frozen=True)
+    return rough and solve(problem, rough.mesh, rough.fields(rough.mesh), rough.parameters, residual)
+
+
+def _walk_through(walk, values):
+    for done, value in enumerate(values):
+        try:
+            yield Continuation((walk.point(value),), {})
+        except ModeLost as reason:
+            yield Continuation((), dict.fromkeys(values[done:], str(reason)))
+            return
+
+
+def _joined(parts):
+    parts = list(parts)
+    return Continuation(tuple(point for part in parts for point in part.points),
+                        {value: reason for part in parts for value, reason in part.lost.items()})
+
+
+class _Walk:
+    """A walk along k or a parameter: `family` maps its value to (flow, k)."""
+
+    def __init__(self, family, start, value, effort):
+        self.tolerance, self.residuals = effort
+        self.step = _FIRST_STEP
+        self.now = start
+        self.move(family, value)
+
+    def move(self, family, value):
+        """Go on along another parameter, which has this value now."""
+        self.family, self.value, self.before, self.slope = family, value, None, None
+
+    @property
+    def sigma(self):
+        return self.now.problem.width * self.now.rate
+
+    def to(self, value):
+        """Reach the value with solve_bvp's coarsest tolerance, in steps short enough for the predictor."""
+        for _ in range(_STEPS):
+            gap = log(value / self.value)
+            if gap == 0:
+                return self
+            self._advance(value if abs(gap) <= self.step else self.value * exp(np.sign(gap) * self.step))
+        raise self._lost(f"{_STEPS} steps did not reach {value:g}")
+
+    @one_thread
+    def point(self, value):
+        """Reach the value, then tighten solve_bvp's tolerance until halving the mesh moves sigma little enough."""
+        self.to(value)
+        problem, coarse = self.now.problem, self.now
+        for i, residual in enumerate(self.residuals):
+            if i:
+                coarse = solve(problem, coarse.mesh, coarse.fields(coarse.mesh), coarse.parameters, residual)
+            mesh = coarse and _halved(coarse.mesh)
+            fine = coarse and solve(problem, mesh, coarse.fields(mesh), coarse.parameters, residual)
+            if not fine:
+                raise self._lost(f"solve_bvp fails at tolerance {residual:g}")
+            error = abs(fine.rate - coarse.rate)
+            if error <= self.tolerance * abs(fine.rate):
+                break
+            coarse = fine
+        status = RESOLVED if error <= self.tolerance * abs(fine.rate) else \
+            f"error {problem.width * error:.1e} exceeds tolerance with {len(fine.mesh)} nodes"
+        sigma = problem.width * fine.rate
+        return Point(problem.flow, problem.k, complex(sigma), float(problem.width * error), len(fine.mesh),
+                     fine.spline.c.shape[-1] * len(fine.mesh), status)
+
+    def _advance(self, value):
+        """Take one step to the value, or shorten the step."""
+        length = abs(log(value / self.value))
+        mesh = _thinned(self.now, self.residuals[0])
+        fields, parameters = self._predict(value, mesh)
+        found = self._corrected(value, mesh, fields, parameters)
+        change = self._change(found, mesh, fields, parameters) if found else np.inf
+        slope = self._slope(found, value) if change < _CHANGE else None
+        if slope is not None and self._bends_little(found, slope, log(value / self.value)):
+            self.before, self.now, self.value, self.slope = (self.value, self.now), found, value, slope
+            factor = min(2.0, max(0.7, (0.5 * _CHANGE / (change + 1e-6)) ** 0.5))
+            self.step = min(_LARGEST_STEP, max(length, self.step if length < self.step else 0) * factor)
+            return
+        self.step = length / 3
+        if self.step < _SMALLEST_STEP:
+            raise self._lost("the next step lands on another mode" if found else "solve_bvp fails at the next step")
+
+    def _corrected(self, value, mesh, fields, parameters):
+        problem = Problem(*self.family(value))
+        return solve(problem, mesh, fields, parameters, self.residuals[0], nodes=_STEP_NODES + len(mesh))
+
+    def _predict(self, value, mesh):
+        """Fields and parameters extrapolated in the logarithm of the value."""
+        fields, parameters = self.now.fields(mesh), self.now.parameters
+        if self.before is None:
+            return fields, parameters
+        old_value, old = self.before
+        ratio = log(value / self.value) / log(self.value / old_value)
+        return (fields + ratio * (fields - old.fields(mesh)),
+                parameters + ratio * (parameters - old.parameters))
+
+    def _change(self, found, mesh, fields, parameters):
+        """Largest relative difference between what was predicted and what was found."""
+        now = found.fields(mesh)
+        moved = np.linalg.norm(now - fields, axis=1) / np.linalg.norm(now, axis=1).clip(1e-12 * np.linalg.norm(now))
+        return max(abs(found.rate - parameters[0]) / abs(found.rate), np.max(moved))
+
+    def _slope(self, solution, value):
+        """d rate / d log(value) by a second solve next to the first; None if it fails."""
+        near = self._corrected(value * exp(_NUDGE), solution.mesh, solution.fields(solution.mesh), solution.parameters)
+        return near and (near.rate - solution.rate) / _NUDGE
+
+    def _bends_little(self, found, slope, length):
+        """True if the slopes at both ends explain the step: it has not jumped across an avoided crossing."""
+        if self.slope is None:
+            self.slope = self._slope(self.now, self.value)
+        if self.slope is None:
+            return False
+        miss = abs(found.rate - self.now.rate - length * (self.slope + slope) / 2)
+        return miss < _BEND * abs(length) * max(abs(self.slope), abs(slope)) + _BEND_FLOOR * abs(found.rate)
+
+    def _lost(self, why):
+        flow, k = self.now.problem.flow, self.now.problem.k
+        return ModeLost(f"{flow}: bvp gives up after k = {k:.6g}, sigma = {self.sigma:.6g}: {why}")
+
+
+def _halved(mesh):
+    return np.sort(np.concatenate((mesh, (mesh[1:] + mesh[:-1]) / 2)))
+
+
+def _thinned(solution, residual):
+    """The mesh without every second node, where the residual allows intervals twice as long."""
+    mesh, size = solution.mesh, solution.residuals
+    inner = np.arange(1, len(mesh) - 1, 2)
+    idle = inner[np.maximum(size[inner - 1], size[inner]) < residual / 50]
+    return mesh if len(mesh) - len(idle) < _START_NODES else np.delete(mesh, idle)

@@ -1,0 +1,21 @@
+"""stability base: the base flow, its profiles through all layers."""
+
+from ..common import add_verb, flow_of, report
+
+
+def add(verbs):
+    add_verb(verbs, "base", _run, "stability base dune --points 11 --plot base.png", _points_option)
+
+
+def _points_option(verb):
+    verb.add_argument("--points", metavar="N", help="heights in each layer, evenly spaced in its coordinate "
+                      "(default 41)")
+
+
+def _run(arguments):
+    from ...checks import check_integer
+    from ...studies.base import MOST, POINTS, base_flow
+
+    flow = flow_of(arguments)
+    points = POINTS if arguments.points is None else check_integer(arguments.points, "--points", 2, MOST)
+    return report(arguments, lambda: base_flow(flow, points))

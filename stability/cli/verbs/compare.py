@@ -1,0 +1,38 @@
+"""stability compare: all methods on one eigenvalue, their errors and times."""
+
+from ..common import add_verb, flow_of, report
+from ..progress import Bar
+from ..specs import parse_one
+
+_POINTS = 21  # of the sweeps: enough for a time per eigenvalue
+_BUDGET = 10.0  # seconds after which nothing long is begun
+
+
+def add(verbs):
+    add_verb(verbs, "compare", _run, "stability compare vortex --k 2 --plot compare.png",
+             _k_option)
+
+
+def _k_option(verb):
+    verb.add_argument("--k", required=True, metavar="K", help="wavenumber")
+
+
+def _run(arguments):
+    flow = flow_of(arguments)
+    k = parse_one(arguments.k, "--k", "wavenumber")
+
+    def compute():
+        from ...studies.compare import comparisons
+
+        bar, found = Bar(arguments.quiet), None
+        try:
+            for found in comparisons(flow, k, report=bar, points=_POINTS, budget=_BUDGET):  # noqa: B007
+                pass
+        except KeyboardInterrupt:
+            if found is None or not found.measurements:
+                raise
+        finally:
+            bar.clear()
+        return found
+
+    return report(arguments, compute)

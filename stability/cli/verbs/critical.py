@@ -1,0 +1,49 @@
+"""stability critical: the value of a parameter at which a flow becomes unstable."""
+
+from ..common import accuracy_options, add_verb, flow_of, options_of, report
+
+
+def add(verbs):
+    add_verb(verbs, "critical", _run, "stability critical poiseuille --vary Re",
+             vary_option, range_option,
+             search_option, long_wave_option, accuracy_options)
+
+
+def vary_option(verb, required=True):
+    verb.add_argument("--vary", required=required, metavar="NAME",
+                      help="parameter to solve for")
+
+
+def range_option(verb):
+    verb.add_argument("--range", metavar="LOW:HIGH", help="values of it to search; default: see stability flows FLOW")
+
+
+def search_option(verb):
+    verb.add_argument("--search", metavar="LOW:HIGH", help="wavenumbers to search (default 0.01:100, and shorter waves "
+                      "in thin layers)")
+
+
+def searched(arguments):
+    """The options --range and --search as arguments of `critical`."""
+    from ...checks import check_range
+
+    names = {"span": "range", "search": "search"}
+    given = {name: getattr(arguments, option, None) for name, option in names.items()}
+    return {name: check_range(value.split(":"), f"--{names[name]}") for name, value in given.items() if value}
+
+
+def long_wave_option(verb):
+    verb.add_argument("--long-wave", action="store_true",
+                      help="the threshold as k -> 0, even where waves of finite length grow on its stable side")
+
+
+def _run(arguments):
+    from ...studies.neutral import check_parameter_name, critical
+
+    flow, options = flow_of(arguments), options_of(arguments)
+    vary = check_parameter_name(flow, arguments.vary.replace("-", "_"))
+
+    def compute():
+        return critical(flow, vary, long_wave=arguments.long_wave, strict=False, **searched(arguments), **options)
+
+    return report(arguments, compute)

@@ -1,0 +1,53 @@
+"""stability dispersion: growth rate and phase speed over wavenumbers."""
+
+from dataclasses import replace
+
+from ...errors import ParameterError
+from ...status import INTERRUPTED
+from ...studies.dispersion import MODES, DispersionRelation, default_mode, dispersion_parts, joined
+from ..common import accuracy_options, add_verb, collect, k_option, options_of
+from ..families import answer, each_option
+from ..methods import method_of, method_options, settings_of
+from ..specs import parse_spec
+
+
+def add(verbs):
+    add_verb(verbs, "dispersion", _run, "stability dispersion dune --Re 100 --k 1e-2:10:50 --plot dune.png",
+             k_option, each_option, _mode_option, method_options, accuracy_options)
+
+
+def _mode_option(verb):
+    verb.add_argument("--mode", metavar="MODE", help=f"one of {', '.join(MODES)}; default: surface where the flow has "
+                      "a slow surface mode, else the leading mode of the smallest k, followed")
+
+
+def _run(arguments):
+    options = options_of(arguments)
+    wavenumbers = parse_spec(arguments.k, "--k")
+    if arguments.mode is not None and arguments.mode not in MODES:
+        raise ParameterError(f"--mode: must be one of {', '.join(MODES)} (got {arguments.mode!r})")
+    return answer(arguments, lambda flow: _question(arguments, flow, wavenumbers, options))
+
+
+def _question(arguments, flow, wavenumbers, options):
+    mode = arguments.mode or default_mode(flow)
+    bvp = method_of(arguments, flow, options["tolerance"])
+    if bvp and mode != MODES[0]:
+        raise ParameterError(f"--mode {mode}: --method {arguments.method} follows the surface mode only")
+
+    def compute():
+        parts = _continued(flow, wavenumbers, **bvp) if bvp else dispersion_parts(flow, wavenumbers, mode, **options)
+        missing = DispersionRelation(flow, mode, (), dict.fromkeys(wavenumbers.tolist(), INTERRUPTED), ())
+        found = collect(arguments, parts, len(wavenumbers), lambda done: [missing], lambda part: len(part.modes))
+        return replace(joined(found, wavenumbers.tolist()), method=arguments.method,
+                       settings=settings_of(bvp, options))
+
+    return compute
+
+
+def _continued(flow, wavenumbers, **bvp):
+    """The surface mode by continuation, point by point."""
+    from ...bvp.continuation import steps_in_k
+
+    for part in steps_in_k(flow, wavenumbers, **bvp):
+        yield DispersionRelation(flow, MODES[0], part.points, part.lost, ())

@@ -1,0 +1,62 @@
+"""stability kmax: the fastest growing wavenumber, over a parameter."""
+
+from ...errors import ParameterError, StabilityError
+from ...status import INTERRUPTED
+from ...studies.kmax import MODES, Optima, Optimum, k_max_sweep
+from ..common import SPEC, accuracy_options, add_verb, collect, options_of, sweep_of
+from ..families import answer, each_option
+from ..methods import method_of, method_options, settings_of
+from .critical import search_option, searched
+
+
+def add(verbs):
+    add_verb(verbs, "kmax", _run, "stability kmax dune --over Re=0.1:1e4:41 --plot kmax.png",
+             _over_option, each_option, _mode_option, search_option, method_options, accuracy_options)
+
+
+def _over_option(verb):
+    verb.add_argument("--over", metavar="NAME=SPEC", help=f"parameter to sweep and its values: {SPEC}")
+
+
+def _mode_option(verb):
+    verb.add_argument("--mode", metavar="MODE", help=f"one of {', '.join(MODES)}: the slow surface mode alone "
+                      "(default of flows that are ill posed), or the fastest of all modes (default elsewhere)")
+
+
+def _run(arguments):
+    if arguments.mode and arguments.mode not in MODES:
+        raise ParameterError(f"--mode: must be one of {', '.join(MODES)} (got {arguments.mode!r})")
+    options = options_of(arguments)
+    return answer(arguments, lambda flow: _question(arguments, flow, options))
+
+
+def _question(arguments, flow, options):
+    name, sweep = sweep_of(arguments, flow)
+    bvps = [method_of(arguments, one, options["tolerance"]) for one in sweep]
+    if bvps[0] is not None and not flow.has_surface_mode():
+        raise ParameterError(f"--method {arguments.method}: {flow.name} has no slow surface mode, the one that is "
+                             "continued; leave it out")
+    for option in ("mode", "search"):
+        if bvps[0] is not None and getattr(arguments, option) is not None:
+            raise ParameterError(f"--{option}: --method {arguments.method} does not use it; leave it out")
+
+    def compute():
+        optima = map(_bounded, sweep, bvps) if bvps[0] is not None else \
+            k_max_sweep(sweep, mode=arguments.mode, **searched(arguments), **options)
+        found = collect(arguments, optima, len(sweep),
+                        lambda done: [Optimum(one, (), INTERRUPTED) for one in sweep[done:]])
+        return Optima(flow, name, tuple(found), arguments.method)
+
+    return compute
+
+
+def _bounded(flow, bvp):
+    """The optimum of a flow by bounded minimisation over solve_bvp's growth rates; the first maximum only."""
+    from ...bvp.continuation import bounded_maximum
+
+    settings = settings_of(bvp)
+    try:
+        found = bounded_maximum(flow, **bvp)
+    except StabilityError as reason:
+        return Optimum(flow, (), str(reason), settings)
+    return Optimum(flow, (found,), found.mode.status, settings)

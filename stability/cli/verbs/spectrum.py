@@ -1,0 +1,30 @@
+"""stability spectrum: the least stable modes at one wavenumber."""
+
+from ...checks import check_integer
+from ...studies.spectrum import MOST, Spectra, spectrum
+from ..common import accuracy_options, add_verb, collect, flow_of, k_option, options_of, report
+from ..specs import parse_spec
+
+
+def add(verbs):
+    add_verb(verbs, "spectrum", _run, "stability spectrum vortex --k 2 --modes 5",
+             k_option, _modes_option,
+             accuracy_options)
+
+
+def _modes_option(verb):
+    verb.add_argument("--modes", default="10", metavar="M", help="how many modes (default 10)")
+
+
+def _run(arguments):
+    flow, options = flow_of(arguments), options_of(arguments)
+    count = check_integer(arguments.modes, "--modes", 1, MOST)
+    wavenumbers = parse_spec(arguments.k, "--k")
+
+    def compute():
+        spectra = (spectrum(flow, k, count, strict=False, **options) for k in wavenumbers.tolist())
+        found = collect(arguments, spectra, len(wavenumbers), lambda done: [])
+        missing = wavenumbers.tolist()[len(found):]
+        return Spectra(flow, tuple(found), tuple(missing)) if len(wavenumbers) > 1 else found[0]
+
+    return report(arguments, compute)

@@ -1,0 +1,1 @@
+"""From the linearised equations of a layer to the matrices of A(k) - rate B(k)."""

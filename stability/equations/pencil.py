@@ -1,0 +1,204 @@
+"""From a system of equations to matrices: the pencil A(k) - rate B(k) at one degree.
+
+A and B are sums of constant matrices times products of scalar symbols (k, and whatever else the flow
+declares as a function of k). They are assembled once for a degree; values, k-derivatives and the
+sensitivity to a symbol then cost a few products. Rows are T-coefficients of the residuals: 0 .. degree-1
+of a first-order equation, one more where its leading coefficient vanishes at an edge, then the
+conditions. The coefficients beyond (the tail) are what the truncated series fails to satisfy; they
+measure the truncation error.
+
+Coefficient j of a field stands opposite row j - 1 of its equation, the fields of a layer interleaved, so that
+the matrices are banded. What has no row opposite (constants of integration, surfaces) and the conditions
+form the border.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..numerics import chebyshev
+from ..numerics.bordered import Bordered, Factors, ManyFactors, Places
+from ..numerics.stack import Lines, Stack
+from .layer import FIELDS
+
+_LAST = 4  # rows of an equation whose left vector bounds that of the tail: the last two alone feel the truncation
+
+
+@dataclass(frozen=True)
+class Weights:
+    """Scalars that multiply the constant matrices: arrays (parts,) at one wavenumber, (parts, points) at several.
+
+    `slope` is d value / dk; `spread` is the uncertainty of the value where a symbol has one.
+    """
+
+    value: np.ndarray
+    slope: np.ndarray
+    spread: np.ndarray
+
+
+def weights_of(structure, symbols):
+    """Return the `Weights` of the parts for symbols {name: (value, slope, error)}, numbers other than 0 or arrays."""
+    value, slope, spread = np.array([symbols[name] for name in structure.symbols]).swapaxes(0, 1)
+    exponents = structure.powers
+    product = np.prod(value ** exponents.reshape(*exponents.shape, *[1] * (value.ndim - 1)), axis=1)
+    return Weights(product, product * (exponents @ (slope / value)),
+                   np.abs(product) * (exponents @ np.abs(spread / value)))
+
+
+class Layout:
+    """Where unknowns and entries of the matrices of one degree lie, from a `table` that reaches it.
+
+    Attributes: `size` rows and columns, of which `interior` are banded; `columns` and `rows` map unknowns and equations
+    to index arrays; `last` (equations, 4) are the last rows of each equation. `stack`, `tail`, `b` and `places` tell
+    where the entries of A - rate B, of the rows beyond, of B and of the bordered band matrix lie; `inside`, `beyond`
+    and `carrying`, which entries of the table those are.
+    """
+
+    def __init__(self, table, degree):
+        self.table, self.structure, self.degree, self._common = table, table.structure, degree, {}
+        columns, rows = self._place(table)
+        reach = np.array([degree + row.extra + table.tail if number < table.structure.equations else 1
+                          for number, row in enumerate(table.structure.rows)])
+        kept = np.flatnonzero((table.column <= degree) & (table.row < reach[table.equation]))
+        part, row, column = (table.part[kept], rows[table.equation[kept], table.row[kept]],
+                             columns[table.unknown[kept], table.column[kept]])
+        here, count = row < self.size, len(self.structure.parts)
+        carries = here & (part >= self.structure.first_b)
+        self.inside, self.beyond, self.carrying = kept[here], kept[~here], kept[carries]
+        self.stack = Lines(part[here], row[here], column[here], count, (self.size, self.size))
+        self.places = Places(part[here], row[here], column[here], count, self.interior, self.size - self.interior)
+        self.tail = Lines(part[~here], row[~here] - self.size, column[~here], count,
+                          (table.tail * len(self.last), self.size))
+        self.b = Lines(part[carries], row[carries], column[carries], count, (self.size, self.size))
+        self.rate_rows = np.unique(row[carries])
+        self.entries = part[here], row[here], column[here]
+
+    def common(self, other):
+        """Which columns, and which rows, it has in common with another degree: for each, where here and where there."""
+        if other.degree not in self._common:
+            self._common[other.degree] = tuple(_common(*pair) for pair in
+                                               ((self.columns, other.columns), (self.rows, other.rows)))
+        return self._common[other.degree]
+
+    def _place(self, table):
+        """Number unknowns and rows: interior interleaved layer by layer, then the border, then the tails.
+
+        Returns the places of columns (unknowns, degree + 1) and of rows (equations and conditions, ...).
+        """
+        structure, width = table.structure, self.degree + 1
+        equations, conditions = structure.rows[:structure.equations], len(structure.rows) - structure.equations
+        extra = np.array([equation.extra for equation in equations])
+        field, j = (index.ravel() for index in np.indices((structure.fields, width)))
+        opposite = j >= 1 - extra[field]
+        field, j = field[opposite], j[opposite]
+        order = np.lexsort((field % len(FIELDS), j, field // len(FIELDS)))
+        field, j, self.interior = field[order], j[order], len(order)
+        columns = np.full((len(structure.unknowns), width), -1)
+        columns[field, j] = np.arange(self.interior)
+        used = np.arange(width) < np.where(np.arange(len(columns)) < structure.fields, width, 1)[:, None]
+        free = used & (columns < 0)
+        self.size = self.interior + int(free.sum())
+        columns[free] = np.arange(self.interior, self.size)
+        rows = np.full((len(extra) + conditions, width + int(extra.max()) + table.tail), -1)
+        rows[field, j - 1 + extra[field]] = np.arange(self.interior)
+        rows[len(extra):, 0] = np.arange(self.interior, self.interior + conditions)
+        self.columns = {name: places[mask]
+                        for name, places, mask in zip(structure.unknowns, columns, used, strict=True)}
+        self.rows = {equation.name: rows[i, : self.degree + equation.extra]
+                     for i, equation in enumerate(equations)}
+        self.rows["conditions"] = rows[len(extra):, 0]
+        self.last = np.array([self.rows[equation.name][-_LAST:] for equation in equations])
+        for i, count in enumerate(self.degree + extra):
+            rows[i, count: count + table.tail] = self.size + i * table.tail + np.arange(table.tail)
+        return columns, rows
+
+
+def _common(one, other):
+    """Places here and there of what two maps from names to index arrays have in common."""
+    counts = {name: min(len(places), len(other[name])) for name, places in one.items()}
+    return tuple(np.concatenate([side[name][:count] for name, count in counts.items()]) for side in (one, other))
+
+
+class Pencil:
+    """Constant matrices of A(k) - rate B(k): entries that lie where `layout` says, with values (entries of its table,).
+
+    The residual of the equations is (A - rate B) x. Attributes of the layout are those of the pencil; `stack` and
+    `tail` are its rows and the rows beyond; `cuts` tell what was left out of the coefficients of `system`, none where
+    that is rounding; `real` tells whether all matrices are real.
+    """
+
+    def __init__(self, layout, values, system):
+        self.layout, self._values = layout, values
+        self.degree, self.parts, self.first_b = layout.degree, layout.structure.parts, layout.structure.first_b
+        self.size, self.columns, self.rows, self.last = layout.size, layout.columns, layout.rows, layout.last
+        self.rate_rows = layout.rate_rows
+        self.real = np.isrealobj(values)
+        self.stack = Stack(layout.stack, values[layout.inside])
+        self.cuts = [(self.parts.index(monomial), unknown, self.rows[equation.name], bound)
+                     for equation in system.equations for unknown, monomial, bound in equation.cuts]
+
+    def weights(self, symbols):
+        """Return the `Weights` for symbols {name: (value, slope, error)}, non-zero numbers or arrays (points,)."""
+        return weights_of(self.layout.structure, symbols)
+
+    def powers(self, rate):
+        """Factor of every part in the residual: 1 in A, the rate in B; (parts,) then the shape of rate."""
+        powers = np.ones((len(self.parts), *np.shape(rate)), np.result_type(rate, float))
+        powers[self.first_b:] = rate
+        return powers
+
+    def cut(self, weights, y, x):
+        """Bound on what series left out change y^T (A - rate B) x, (points,); `weights` (parts, points) of the parts.
+
+        The T-coefficients of a residual are integrals over the angle: y^T times those of g is the mean of Y g with
+        Y = y_0 + 2 (y_1 T_1 + y_2 T_2 + ...). With a coefficient of the unknown f wrong by delta at most, it is wrong
+        by delta times the mean of |Y f|.
+        """
+        total = np.zeros(x.shape[1:])
+        for part, unknown, rows, bound in self.cuts:
+            series = chebyshev.basis(self.degree)[int(unknown.endswith("'"))] @ x[self.columns[unknown.rstrip("'")]]
+            adjoint = 2 * y[rows]
+            adjoint[0] /= 2
+            total += bound * np.abs(weights[part]) * np.mean(self._sizes(adjoint) * self._sizes(series), axis=-1)
+        return total
+
+    def _sizes(self, series):
+        """Moduli of T-series (terms, points) at Chebyshev points (last axis), twice as many as there are terms."""
+        padded = np.zeros((*series.shape[1:], 2 * self.degree + 2), series.dtype)
+        padded[..., :len(series)] = series.T
+        return np.abs(chebyshev.values(padded))
+
+    @cached_property
+    def tail(self):
+        return Stack(self.layout.tail, self._values[self.layout.beyond])
+
+    @cached_property
+    def _b(self):
+        return Stack(self.layout.b, -self._values[self.layout.carrying])
+
+    def b(self, weights, x):
+        """Return B x, (size, points) or (size,), for weights (parts, points) or (parts,) of the parts."""
+        return self._b.total(self._b.spread(weights), self._b.times(x))
+
+    def b_left(self, weights, y):
+        """Return y^T B, (size, points) or (size,)."""
+        return self._b.total_left(self._b.spread(weights), y)
+
+    def factors(self, weights, rate):
+        """Return LU factors of A - rate B for weights (parts,) of the parts, or (parts, points) and rates (points,)."""
+        kind = ManyFactors if np.ndim(rate) else Factors
+        return kind(self._bordered, weights * self.powers(rate))
+
+    @cached_property
+    def _bordered(self):
+        return Bordered(self.layout.places, self._values[self.layout.inside])
+
+    def pair(self, weights):
+        """Return A and B in full, each (size, size)."""
+        part, row, column = self.layout.entries
+        value = self._values[self.layout.inside] * weights.value[part]
+        full = np.zeros((2, self.size, self.size), value.dtype)
+        carries = part >= self.first_b
+        np.add.at(full, (carries.astype(int), row, column), np.where(carries, -value, value))
+        return full[0], full[1]

@@ -1,0 +1,214 @@
+"""The equations and conditions of a flow, written out once: which coefficient multiplies which unknown.
+
+Independent of any resolution. Terms are kept as (unknown, monomial, series): the Chebyshev series in s
+multiplies the unknown (or its s-derivative, marked ') and a product of scalar symbols such as k^2 rate.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from types import SimpleNamespace
+
+import numpy as np
+
+from ..checks import shown
+from ..errors import ConditionCount, ParameterError
+from .forms import Form, symbol
+from .layer import FIELDS, residuals, resolved
+
+_EQUATIONS = ("shear rate", "continuity", "momentum along", "momentum across")
+
+
+@dataclass(frozen=True)
+class Equation:
+    """One first-order equation: its terms, and how many rows it takes beyond the degree.
+
+    `cuts` are (unknown, monomial, bound) of the terms whose series leave out more than rounding.
+    """
+
+    name: str
+    terms: tuple
+    extra: int
+    cuts: tuple = ()
+
+
+@dataclass(frozen=True)
+class Row:
+    """An equation or a condition, whatever its coefficients: terms (unknown, monomial, indices of what is not 0)."""
+
+    name: str
+    extra: int
+    terms: tuple
+
+
+@dataclass(frozen=True)
+class Structure:
+    """What systems have in common that differ in numbers alone: `rows` of the `equations` and then of the conditions.
+
+    The first `fields` of the `unknowns` are fields, the others surfaces; `longest` is that of `System`. `parts` are the
+    monomials, those from `first_b` on with the rate; `powers` (parts, symbols) counts the other `symbols` in them.
+    """
+
+    unknowns: tuple
+    fields: int
+    equations: int
+    longest: int
+    rows: tuple
+
+    @cached_property
+    def parts(self):
+        return tuple(sorted({monomial for row in self.rows for _, monomial, _ in row.terms},
+                            key=lambda monomial: ("rate" in monomial, monomial)))
+
+    @cached_property
+    def first_b(self):
+        return sum("rate" not in part for part in self.parts)
+
+    @cached_property
+    def symbols(self):
+        return tuple(sorted({name for part in self.parts for name in part} - {"rate"}))
+
+    @cached_property
+    def powers(self):
+        return np.array([[part.count(name) for name in self.symbols] for part in self.parts])
+
+
+class System:
+    """All `equations` and `conditions` of a flow, with the names of its `unknowns` and `surfaces`."""
+
+    def __init__(self, flow):
+        names = SimpleNamespace(k=symbol("k"), rate=symbol("rate"),
+                                **{name: symbol(name) for name in (*flow.functions, *flow.surfaces)})
+        layers = flow.layers(names)
+        self.fields = tuple(f"{layer.name}.{field}" for layer in layers for field in FIELDS)
+        self.surfaces = tuple(flow.surfaces)
+        self.equations = tuple(equation for index in range(len(layers))
+                               for equation in self._equations(flow, layers, index, names))
+        edges = SimpleNamespace(**{layer.name: tuple(_edge(layer, end) for end in (0, 1)) for layer in layers})
+        given = flow.conditions(edges, names)
+        _check_conditions(flow, given)
+        self.conditions = tuple(self._terms(form) for form in given)
+        self.dynamic_layers = sum(not layer.steady for layer in layers)
+        _check_count(flow, layers, len(self.conditions))
+
+    @property
+    def pattern(self):
+        """Which unknowns and monomials meet in each equation and condition, whatever their coefficients: hashable."""
+        return tuple((row.extra, tuple(term[:2] for term in row.terms)) for row in self.structure.rows)
+
+    @cached_property
+    def structure(self):
+        """The `Structure` of the equations."""
+        rows = *((one.name, one.extra, one.terms) for one in self.equations), *(("", 0, one) for one in self.conditions)
+        return Structure((*self.fields, *self.surfaces), len(self.fields), len(self.equations), self.longest, tuple(
+            Row(name, extra, tuple((unknown, monomial, _support(series)) for unknown, monomial, series in terms))
+            for name, extra, terms in rows))
+
+    @property
+    def coefficients(self):
+        """All Chebyshev coefficients that are not 0, term by term in the order of the structure."""
+        rows = *(equation.terms for equation in self.equations), *self.conditions
+        return np.concatenate([series[series != 0] for terms in rows for *_, series in terms])
+
+    def __eq__(self, other):
+        return _same(self.equations, other.equations) and _same(self.conditions, other.conditions)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    @property
+    def longest(self):
+        """Terms of the longest series."""
+        return max(len(series) for equation in self.equations for *_, series in equation.terms)
+
+    def _equations(self, flow, layers, index, names):
+        layer = layers[index]
+        fields = [symbol(f"{layer.name}.{field}") for field in FIELDS]
+        slopes = [symbol(f"{layer.name}.{field}'") for field in FIELDS]
+        rate = 0.0 if layer.steady else names.rate
+        keys = []
+
+        def coefficients(base, s):
+            forms = residuals(base, names.k, rate, fields, slopes, flow.order)
+            keys[:] = [(equation, product) for equation, form in enumerate(forms) for product in form.terms]
+            return [forms[equation].terms[product] for equation, product in keys]
+
+        fit = resolved(flow, layers, index, coefficients)
+        cuts = fit.cut.tolist()
+        for equation, name in enumerate(_EQUATIONS):
+            here = [(*self._split(product), series, cut)
+                    for (index, product), series, cut in zip(keys, fit.series, cuts, strict=True)
+                    if index == equation and (len(series) > 1 or series[0])]
+            yield Equation(f"{layer.name}: {name}", tuple(term[:3] for term in here),
+                           layer.singular if name == "shear rate" else 0,
+                           tuple((unknown, monomial, cut) for unknown, monomial, _, cut in here if cut))
+
+    def _terms(self, form):
+        """Split every term of a condition into its one unknown, its monomial and its number as a series."""
+        return tuple((*self._split(names), _series(number)) for names, number in form.terms.items() if number)
+
+    def _split(self, names):
+        """The one unknown among the names of a product, and the monomial of the others."""
+        all_ = self.fields + self.surfaces
+        unknowns = [name for name in names if name.rstrip("'").partition("@")[0] in all_]
+        if len(unknowns) != 1 or names.count("rate") > 1:
+            raise ParameterError("equations and conditions must be linear in the unknowns and in the rate: got "
+                                 f"{'*'.join(names) or 'a constant'}")
+        return unknowns[0], tuple(name for name in names if name != unknowns[0])
+
+
+def _same(one, other):
+    """Equality of nested tuples whose leaves may be arrays."""
+    if isinstance(one, np.ndarray):
+        return np.array_equal(one, other)
+    if isinstance(one, Equation):
+        alike = (one.name, one.extra, one.cuts) == (other.name, other.extra, other.cuts)
+        return alike and _same(one.terms, other.terms)
+    if isinstance(one, tuple):
+        return len(one) == len(other) and all(_same(a, b) for a, b in zip(one, other, strict=True))
+    return one == other
+
+
+def _edge(layer, end):
+    return SimpleNamespace(**{field: symbol(f"{layer.name}.{field}@{end}") for field in FIELDS})
+
+
+def _support(series):
+    return tuple(np.flatnonzero(series).tolist())
+
+
+def _series(number):
+    """A number as a series of one term; real if it is real."""
+    return np.array([number if number.imag else number.real])
+
+
+def _check_conditions(flow, given):
+    """Conditions are different forms with finite coefficients; their numbers in messages count from 1."""
+    if not isinstance(given, tuple | list):
+        raise ParameterError(f"{flow.name}: conditions(edges, names) must return a tuple (got {shown(given)})")
+    for number, form in enumerate(given, 1):
+        if not isinstance(form, Form) or not any(form.terms.values()):
+            raise ParameterError(f"{flow.name}: condition {number} has no unknown: it is to be a sum such as "
+                                 f"edge.v + names.k * edge.w, that is 0 (got {shown(getattr(form, 'terms', form))})")
+        for names, coefficient in form.terms.items():
+            if np.shape(coefficient) or not np.isfinite(coefficient):
+                raise ParameterError(f"{flow.name}: condition {number}: the coefficient of {'*'.join(names)} must be a "
+                                     f"finite number (got {shown(coefficient)})")
+        for other in range(1, number):
+            if _proportional(given[other - 1].terms, form.terms):
+                raise ParameterError(f"{flow.name}: conditions {other} and {number} say the same")
+
+
+def _proportional(one, other):
+    one, other = ({names: value for names, value in terms.items() if value} for terms in (one, other))
+    if one.keys() != other.keys():
+        return False
+    ratios = [complex(other[names] / value) for names, value in one.items()]
+    return all(abs(ratio - ratios[0]) <= 1e-12 * abs(ratios[0]) for ratio in ratios)
+
+
+def _check_count(flow, layers, given):
+    """Each layer needs one condition per equation, less one per singular edge; each surface one more."""
+    needed = sum(4 - layer.singular for layer in layers) + len(flow.surfaces)
+    if given != needed:
+        parts = [f"{4 - layer.singular} for {layer.name}" for layer in layers]
+        parts += [f"1 for {surface}" for surface in flow.surfaces]
+        raise ConditionCount(f"{flow.name}: expected {needed} conditions ({', '.join(parts)}), got {given}")

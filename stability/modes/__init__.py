@@ -1,0 +1,1 @@
+"""Eigenvalues and modes at one wavenumber, and one mode followed along k."""

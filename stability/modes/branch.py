@@ -1,0 +1,279 @@
+"""One mode as a function of k, the same whoever asks: where it starts, and what is read off between its nodes.
+
+A branch is the mode that a walk visits which leads away from its start by steps of its own. The start and the
+steps depend on the flow alone, never on the wavenumbers asked for: those lie between two nodes of the walk, and
+are refined from their interpolation. So a wavenumber asked for alone has the mode that it has in any company.
+
+The surface mode starts in long waves, where it obeys the limit that its flow states; the leading mode starts at one
+wavenumber that is the flow's own.
+"""
+
+from math import copysign, log
+
+import numpy as np
+
+from ..errors import ModeLost, ParameterError
+from ..flows.sources import shipped
+from .solver import transfer
+from .tracking import Walk
+
+_ROUGH = 1e-4  # tolerance of the walk; what is asked for is refined to full accuracy
+_FIRST, _FACTOR, _TRIES = 0.04, 5.0, 30  # wavenumbers at which the long-wave limit is sought: each a part of the last
+_AGREEMENT = 0.03  # of the surface mode with its long-wave limit, in value and in slope
+_CONFIRMED = 3  # wavenumbers in a row, each a part of the last, at which it must agree
+_NO_FARTHER = 1.5, 1e-3  # factor in its distance from the limit that each may have over the one before, and a floor
+_TENDS, _CLOSE = 0.5, 1e-3  # limit of the difference over that at the last of them where a law is wrong; its accuracy
+_FEW = 3  # wavenumbers between two nodes that are refined one by one
+_DRIFT = 0.01  # largest relative difference of a refined rate from its interpolation
+_ASTRAY = 0.5  # largest deviation of the overlap with the next node from 1
+
+
+class Branch:
+    """The mode `start` followed to any wavenumber; `solver` refines what is asked for, `rough` walks.
+
+    `lost` maps a side, 1 for rising k and -1 for falling k, to the reason why the walk ended there.
+    """
+
+    def __init__(self, solver, start, rough=None):
+        self.solver, self.start = solver, start
+        rough = rough or solver.rough(_ROUGH)
+        self._walks = {side: Walk(rough, start, solver) for side in (1, -1)}
+        self.lost = {}
+
+    @property
+    def collisions(self):
+        """The collisions met so far, by rising k."""
+        return tuple(sorted((one for walk in self._walks.values() for one in walk.collisions), key=lambda one: one.k))
+
+    @property
+    def encounters(self):
+        """Where another mode nearly met this one so far, by rising k."""
+        return tuple(walk.encounter for walk in self._walks.values() if walk.encounter)[::-1]
+
+    @property
+    def uneventful(self):
+        """Whether no other mode was met and nothing lost so far."""
+        return not (self.collisions or self.encounters or self.lost)
+
+    @property
+    def segments(self):
+        """Lists of nodes by rising k, without a collision inside."""
+        down, up = self._walks[-1].segments, self._walks[1].segments
+        whole = [*down[0][:0:-1], *up[0]]
+        return [*(part[::-1] for part in down[:0:-1]), whole, *up[1:]]
+
+    def reach(self, k):
+        """Walk until k lies behind; return whether it does."""
+        side = self._side(k)
+        walk = self._walks[side]
+        if side * log(k / walk.now.k) > 0 and side not in self.lost:
+            try:
+                walk.beyond(k)
+            except ModeLost as reason:
+                self.lost[side] = reason
+        return side * log(k / walk.now.k) <= 0
+
+    def why_lost(self, k):
+        """Why the walk does not reach k."""
+        return str(self.lost[self._side(k)])
+
+    def at(self, wavenumbers):
+        """Return {k: mode} at the wavenumbers reached, and {k: reason} at the others."""
+        wavenumbers = np.asarray(wavenumbers, dtype=float).tolist()
+        for k in (min(wavenumbers), max(wavenumbers)):
+            self.reach(k)
+        low, high = self._walks[-1].now.k, self._walks[1].now.k
+        reached = [k for k in wavenumbers if low <= k <= high]
+        found, lost = {}, {k: self.why_lost(k) for k in wavenumbers if not low <= k <= high}
+        if reached:
+            self.solver.prepare(np.array(reached))
+        for k, mode in self._together(reached).items():
+            if isinstance(mode, ModeLost):
+                lost[k] = str(mode)
+            else:
+                found[k] = mode
+        return found, lost
+
+    def _side(self, k):
+        return int(copysign(1, log(k / self.start.k)))
+
+    def _between(self, nodes, index, k, known=None):
+        """The mode at k next to its interpolation, or by a walk from the node before; the reason where it is lost.
+
+        `known` is one near by that is resolved, if there is one: it tells which degree to try.
+        """
+        near = nodes[index]
+        try:
+            if len(nodes) > 1 and k != near.k:
+                degree = self.solver.next_degree(known) if known else 0
+                degree = max(degree, *(self.solver.likely_degree(node) for node in nodes[index: index + 2]))
+                (rate,), (x,), (y,) = interpolated(self.solver, nodes, index, np.log([k]), degree)
+                mode = self._solved(k, rate, (degree, x, y))
+                if mode and _near(mode, rate, near) and abs(self.solver.overlap(near, mode) - 1) < _ASTRAY:
+                    return mode
+            mode = self._solved(near.k, near.rate, (near.degree, near.x, near.y)) or near
+            return mode if k == near.k else Walk(self.solver, mode).to(k)
+        except ModeLost as reason:
+            return reason
+
+    def _solved(self, k, rate, vectors):
+        try:
+            return self.solver.solve(k, rate, vectors)
+        except ModeLost:
+            return None
+
+    def _together(self, wavenumbers):
+        """Modes at many wavenumbers: of those between two nodes of the walk some are refined one by one, and the others
+        together, next to the interpolation between those."""
+        gaps = {}
+        for k, (nodes, index) in zip(wavenumbers, _intervals(self.segments, wavenumbers), strict=True):
+            gaps.setdefault((id(nodes[0]), index), (nodes, index, []))[2].append(k)
+        found, between = {}, {}
+        for (segment, _), (nodes, index, inside) in gaps.items():
+            chosen = inside if len(inside) <= _FEW else [inside[0], inside[-1]]
+            finer, rest = between.setdefault(segment, ([], []))
+            for k in chosen:
+                found[k] = self._between(nodes, index, k, finer[-1] if finer else None)
+                finer += [found[k]] if not isinstance(found[k], ModeLost) else []
+            rest += [(k, nodes, index) for k in inside if k not in found]
+        for finer, rest in between.values():
+            found |= self._refined(finer, rest)
+        return found
+
+    def _refined(self, finer, rest):
+        """{k: mode} for each of the `rest` (k, nodes of the walk, index of the one before) next to the interpolation
+        between the modes `finer`; what does not settle there is refined alone."""
+        batches, found, last = {}, {}, finer[-1] if finer else None
+        places = _intervals([finer], [k for k, *_ in rest]) if len(finer) > 1 and rest else []
+        for (_, index), one in zip(places, rest, strict=False):
+            batches.setdefault(max(finer[index].degree, finer[index + 1].degree), {}).setdefault(index, []).append(one)
+        for degree, batch in batches.items():
+            wavenumbers = [k for group in batch.values() for k, *_ in group]
+            guesses = [interpolated(self.solver, finer, index, np.log([k for k, *_ in group]), degree)
+                       for index, group in batch.items()]
+            rates, *vectors = (np.concatenate(parts) for parts in zip(*guesses, strict=True))
+            before = [finer[index] for index, group in batch.items() for _ in group]
+            modes = self.solver.solve_many(wavenumbers, rates, vectors, degree)
+            found |= {k: mode for k, mode, rate, near in zip(wavenumbers, modes, rates, before, strict=True)
+                      if mode and _near(mode, rate, near)}
+        return found | {k: self._between(nodes, index, k, last) for k, nodes, index in rest if k not in found}
+
+
+def _near(mode, rate, node):
+    """Whether a mode is where the interpolation of its rate from `node` and the next one expects it."""
+    return abs(mode.rate - rate) < _DRIFT * (abs(rate) + abs(node.rate - rate))
+
+
+def surface_branch(solver):
+    """Return the branch of the slow surface mode of `solver.flow`; raise ModeLost where it has no long-wave limit."""
+    return Branch(solver, surface_mode(solver.rough(_ROUGH)))
+
+
+def surface_mode(solver, highest=_FIRST):
+    """Return the slow surface mode at a wavenumber <= `highest` from which on it obeys its long-wave limit.
+
+    Value and logarithmic slope must agree there, and again at a fifth and a twenty-fifth of it, no worse: another mode
+    can meet one of them by chance.
+    """
+    agreeing = []
+    for k, limit, exponent in _laws(solver, highest):
+        mode, distance = _glance(solver, k, limit, exponent, agreeing[-1][0] if agreeing else None)
+        if agreeing and not distance < max(_NO_FARTHER[0] * agreeing[-1][1], _NO_FARTHER[1]):
+            agreeing = []
+        if distance < _AGREEMENT:
+            agreeing.append((mode, distance, limit, exponent))
+        if len(agreeing) == _CONFIRMED:
+            start, _, *law = agreeing[0]
+            mode = start if solver.fits(start) else solver.refined(start)
+            if _distance(mode, *law) < _AGREEMENT:
+                _check_law(solver.flow, agreeing)
+                return mode
+            agreeing = []
+    if not shipped(type(solver.flow)):
+        raise ParameterError(f"{solver.flow.name}: long_wave contradicts the equations: no mode obeys it, in value "
+                             f"and slope, down to k = {k:.1e}")
+    raise ModeLost(f"{solver.flow}: no mode obeys the long-wave limit down to k = {k:.1e}")
+
+
+def _laws(solver, highest):
+    """Yield the wavenumbers that are tried, from the highest down, with the long-wave limit and its exponent."""
+    tried = highest / _FACTOR ** np.arange(_TRIES)
+    for first in range(0, _TRIES, _CONFIRMED):
+        few = tried[first: first + _CONFIRMED]
+        solver.prepare(few)
+        limits, ahead = np.split(solver.flow.long_wave(np.concatenate((few, 1.01 * few))), 2)
+        yield from zip(few.tolist(), limits, np.log(ahead / limits) / log(1.01), strict=True)
+
+
+def _check_law(flow, agreeing):
+    """Refuse a law, given by a flow from elsewhere, to which the mode does not tend.
+
+    Its relative difference from the law falls like a power of k, by the same factor from each wavenumber to the next:
+    what is left of it in the end follows from three of them.
+    """
+    if shipped(type(flow)):  # derived and proved
+        return
+    first, middle, last = (mode.sigma / limit - 1 for mode, _, limit, _ in agreeing)
+    bend = first + last - 2 * middle
+    left = (first * last - middle**2) / bend if abs(bend) > _CLOSE * abs(last) else last
+    if abs(left) > max(_TENDS * abs(last), _CLOSE):
+        mode, _, limit, _ = agreeing[-1]
+        raise ParameterError(f"{flow.name}: long_wave contradicts the equations: at k = {mode.k:.1e} it is "
+                             f"{limit:.6g}, the mode {mode.sigma:.6g}, and comes no closer as k falls")
+
+
+def _glance(solver, k, limit, exponent, above=None):
+    """The mode next to the long-wave limit, and how far from it, relative; None and infinity where none settles.
+
+    `above` is the one that was found at the wavenumber before, if any.
+    """
+    vectors = (above.degree, above.x, above.y) if above else None
+    try:
+        mode = solver.solve(k, limit / solver.width(k), vectors, glance=True)
+    except ModeLost:
+        return None, np.inf
+    return mode, _distance(mode, limit, exponent)
+
+
+def _distance(mode, limit, exponent):
+    return max(abs(mode.sigma / limit - 1), abs(mode.k * mode.slope / mode.sigma - exponent))
+
+
+def _intervals(segments, wavenumbers):
+    """For each wavenumber the segment that contains it, or the one that ends nearest to it, and the node before it."""
+    logs, t = [np.log([node.k for node in nodes]) for nodes in segments], np.log(wavenumbers)
+    outside = np.array([np.maximum(np.maximum(ends.min() - t, t - ends.max()), 0) for ends in logs])
+    places = []
+    for at, which, far in zip(t, outside.argmin(axis=0).tolist(), outside.min(axis=0), strict=True):
+        nodes, ends = segments[which], logs[which]
+        if far:
+            places.append(([nodes[0 if abs(ends[0] - at) < abs(ends[-1] - at) else -1]], 0))
+            continue
+        index = int(np.searchsorted(ends, at, side="right")) - 1
+        places.append((nodes, min(max(index, 0), max(len(nodes) - 2, 0))))
+    return places
+
+
+def interpolated(solver, nodes, index, t, degree):
+    """Rates (cubic, values and slopes of two nodes) and vectors (cubic, four nodes) at log k = t (points,)."""
+    here, there = nodes[index], nodes[index + 1]
+    h = log(there.k / here.k)
+    u = (t - log(here.k)) / h
+    rise = there.rate - here.rate
+    a, b = h * here.k * here.rate_slope - rise, rise - h * there.k * there.rate_slope
+    rates = here.rate + u * rise + u * (1 - u) * (a * (1 - u) + b * u)
+    first = min(max(index - 1, 0), max(len(nodes) - 4, 0))
+    used = nodes[first: first + 4]
+    times = np.log([node.k for node in used])
+    ratios = (t - times[:, None]) / (times[:, None] - times + np.eye(len(used)))[..., None]
+    ratios[np.diag_indices(len(used))] = 1.0
+    weights = ratios.prod(axis=1)
+    vectors = [transfer(solver, (node.degree, node.x, node.y), degree) for node in used]
+    return rates, *(_blend(weights, rows, index - first) for rows in zip(*vectors, strict=True))
+
+
+def _blend(weights, vectors, reference):
+    """Weighted sums (points, size) of eigenvectors, each first given the scale of the one at `reference`."""
+    base = vectors[reference]
+    size = np.vdot(base, base)
+    return weights.T @ np.array([size / np.vdot(base, vector) * vector for vector in vectors])

@@ -1,0 +1,315 @@
+"""Where growth rates are largest over k: every crest of every mode that matters.
+
+The surface mode is followed from long waves to the end of the search, and a crest lies wherever the slope of its
+growth turns from positive to negative. Other modes are looked for at neighbouring wavenumbers: all that decay no
+faster than `_DEPTH` times the waves travel are taken from dense spectra whose completeness is checked, and followed
+to both neighbours; a crest lies where the slope turns on the way.
+"""
+
+from contextlib import suppress
+from dataclasses import dataclass
+from itertools import combinations, pairwise
+from math import ceil, exp, log
+from typing import Any
+
+import numpy as np
+
+from ..equations.layer import numbers
+from ..errors import ModeLost
+from ..numerics import chebyshev
+from ..status import is_resolved
+from .branch import surface_branch
+from .listing import near_neutral, same
+from .memory import branch_of
+from .response import error_of_maximum
+from .short_waves import ill_posed_somewhere
+from .tracking import Walk
+
+SEARCH = 1e-2, 100.0  # range of k; with a surface mode its lower end moves down until growth is a power of k
+ROUGH = 1e-4  # tolerance of the look: small systems find the brackets
+_FINER = 1e-7  # where the sign of a slope is in doubt
+
+_SHORT = 20.0  # wavenumber times thickness of a layer up to which growth is looked for at least
+_STEP = 0.3  # of the look at other modes, in log k
+_DEPTH = 0.05  # damping of the modes that are followed, as a wave speed over the spread of speeds
+_POINTS = 32  # at which that spread is taken
+_FIT, _CLEARLY = 0.3, 0.1  # departure of two modes from one curve, relative to its size and to that of other pairs
+_DECADE = 10.0
+_DECADES = 16  # below the search in which the long-wave regime is sought
+_VANISHING = 1e-9  # wavenumber that stands for 0
+_AGREEMENT = 0.03  # of the mode there with the long-wave limit
+_POWERS = 0.9, 2.5  # of k, between which growth lies there
+_FACTOR, _CHANGE = 1.5, 0.3  # of growth, and in its power, from what it is there, in long waves
+_REGIME = 0.02  # change of the local power of the long-wave law in a decade that its own regimes differ by
+_UNEVEN = 0.2  # departure of growth between two nodes from the mean of its end slopes beyond which they get a middle
+_FINEST = 6  # halvings of a stretch between two nodes
+_ITERATIONS = 40
+_SETTLED = 1e-15  # relative step in k
+_NEAR = 1e-6  # relative way from a known mode within which vectors are refined twice
+_APART = 1e-5  # relative distance of two k from which the slopes there give the curvature
+_AUDIBLE = 1.5  # times its error that a slope of growth must have, or the mode is computed properly
+_NOISE = 5.0  # times its error that a difference or slope of growth must have to be judged by
+_SCATTER = 4.0  # error of a slope in units of its change when the vectors are refined once more (measured)
+_OVERLAP = 0.3  # largest deviation of the overlap of one step from 1
+_K_TOLERANCE = 1e-8  # relative error of k_max that is accepted as resolved whatever the tolerance of sigma
+
+
+@dataclass(frozen=True)
+class Maximum:
+    """A local maximum of the growth rate: `error` bounds the absolute error of k, `status` says whether it is small."""
+
+    k: float
+    error: float
+    mode: Any
+    status: str
+    data_error: float | None = None  # standard error of k from that of a measured base flow
+
+    @property
+    def growth_rate(self) -> float:
+        return self.mode.growth_rate
+
+
+def default_mode(flow):
+    """Whose crests are meant unless told otherwise: those of all modes, "leading", or in ill-posed flows "surface"."""
+    if not flow.has_surface_mode():
+        return "leading"
+    return "surface" if ill_posed_somewhere(flow) else "leading"
+
+
+def search_of(flow, mode):
+    """The range of k that is searched unless told otherwise: up to waves short beside the thinnest layer."""
+    if mode != "leading":
+        return SEARCH
+    thinnest = min(float(layer.height(np.array(1.0))) for layer in flow.layers(numbers(flow)))
+    return SEARCH[0], max(SEARCH[1], _SHORT / thinnest)
+
+
+@dataclass(frozen=True)
+class Look:
+    """What was seen along k: `brackets`, pairs of modes with a crest in between; `ends`, modes at both ends of the
+    search; `trouble`, why something may have been overlooked, or None."""
+
+    brackets: list
+    ends: tuple[list, list]
+    trouble: str | None
+
+
+def surface_look(solver, low, high):
+    """Look along the surface mode, from where growth is a power of k to k = high; `low` bounds where that is sought.
+
+    Raises ModeLost where there is no such regime.
+    """
+    rough, finer = solver.rough(ROUGH), solver.rough(_FINER)
+    with branch_of(solver, surface_branch) as branch:
+        start = _long_waves(branch, low)
+        lost = None if branch.reach(high) else branch.why_lost(high)
+        nodes = [node for part in branch.segments for node in part if start <= node.k]
+    inside = sum(node.k < high for node in nodes)
+    nodes = [_heard(finer, node) for node in nodes[: inside + 1]]
+    brackets = [pair for a, b in pairwise(nodes) for pair in _brackets(rough, a, b)]
+    return Look(brackets, (nodes[:1], [] if lost else nodes[-1:]), lost)
+
+
+def look(solver, low, high):
+    """Look at every mode that decays slowly or grows, low <= k <= high, each symmetry class by itself."""
+    parts = [_look(half, low, high) for half in solver.halves]
+    trouble = [part.trouble for part in parts if part.trouble]
+    first, last = ([mode for part in parts for mode in part.ends[side]] for side in (0, 1))
+    return Look([pair for part in parts for pair in part.brackets], (first, last), trouble[0] if trouble else None)
+
+
+def _look(solver, low, high):
+    high = min(high, solver.flow.shortest())
+    if not low < high:
+        return Look([], ([], []), None)
+    grid = np.geomspace(low, high, 1 + max(1, ceil(log(high / low) / _STEP))).tolist()
+    rough, rung, columns, trouble = solver.rough(ROUGH), 0, [], None
+    depth = depth_of(solver.flow)
+    for k in grid:
+        try:
+            modes, rung = near_neutral(rough, k, depth(k), rung)
+            columns.append(modes)
+        except ModeLost as reason:
+            trouble = trouble or str(reason)
+            columns.append(None)
+    brackets = [pair for here, there in pairwise(columns) if here is not None and there is not None
+                for nodes in _ways(rough, here, there) for a, b in pairwise(nodes) for pair in _brackets(rough, a, b)]
+    return Look(brackets, (columns[0] or [], columns[-1] or []), trouble)
+
+
+def depth_of(flow):
+    """The decay rate, in units of the rates, down to which modes are looked at, as a function of k.
+
+    In terms of wave speeds: `_DEPTH` of the differences of speed, or the thickness of a viscous layer in these units
+    where that is less: no wave speed changes by more within a step.
+    """
+    points = chebyshev.points(_POINTS)
+    bases = [layer.base(points) for layer in flow.layers(numbers(flow)) if not layer.steady]
+    speed = float(np.ptp(np.concatenate([np.broadcast_to(base.U, points.shape) for base in bases]))) or 1.0
+    viscosity = min(float(np.mean(base.beta / base.rho)) for base in bases)
+    return lambda k: speed * min(_DEPTH, (viscosity / (k * speed)) ** (1 / 3))
+
+
+def _ways(solver, here, there):
+    """Nodes by rising k of every mode from one wavenumber to the next: both ends where rates and slopes leave no doubt
+    which belong together, else as followed there, or back where none arrived."""
+    pairs = _partners(here, there)
+    yield from pairs
+    known = [mode for pair in pairs for mode in pair]
+    arrived = []
+    for start in here:
+        if there and start not in known:
+            with suppress(ModeLost):
+                walk = Walk(solver, start)
+                arrived.append(walk.to(there[0].k))
+                yield [node for part in walk.segments for node in part]
+    for start in there:
+        if here and start not in known and not any(same(start, mode) for mode in arrived):
+            with suppress(ModeLost):
+                walk = Walk(solver, start)
+                walk.to(here[0].k)
+                yield [node for part in walk.segments for node in part][::-1]
+
+
+def _partners(here, there):
+    """Pairs of modes at two wavenumbers whose rates and slopes fit one curve, and no other pair nearly as well."""
+    if not here or not there:
+        return []
+    h = log(there[0].k / here[0].k)
+    (a, b), (u, v) = (np.array([(mode.rate, h * mode.k * mode.rate_slope) for mode in modes]).T
+                      for modes in (here, there))
+    bend = np.abs(u - a[:, None] - (b[:, None] + v) / 2)  # of every pair (here, there)
+    size = np.abs(u - a[:, None]) + np.abs(b[:, None]) + np.abs(v)
+    pairs = []
+    for i, j in enumerate(bend.argmin(axis=1).tolist()):
+        rivals = np.concatenate((np.delete(bend[i], j), np.delete(bend[:, j], i)))
+        if bend[i, j] < _FIT * size[i, j] and np.all(bend[i, j] < _CLEARLY * rivals):
+            pairs.append([here[i], there[j]])
+    return pairs
+
+
+def _heard(solver, node):
+    """The node, computed by a finer solver where its slope of growth does not stand out from its error."""
+    if abs(node.slope.real) > _AUDIBLE * node.slope_error:
+        return node
+    return solver.refined(node)
+
+
+def _brackets(solver, left, right, halvings=_FINEST):
+    """Pairs of modes between two nodes with a crest in between, halving what is too uneven to judge by its ends."""
+    a, b = (mode.k * mode.slope.real for mode in (left, right))
+    h, rise = log(right.k / left.k), right.growth_rate - left.growth_rate
+    size = abs(rise) + h * (abs(a) + abs(b))
+    if halvings and abs(rise - h * (a + b) / 2) > _UNEVEN * size and size > _NOISE * (left.error + right.error):
+        with suppress(ModeLost):
+            middle = Walk(solver, left).to((left.k * right.k) ** 0.5)
+            return [*_brackets(solver, left, middle, halvings - 1), *_brackets(solver, middle, right, halvings - 1)]
+    return [(left, right)] if a > 0 >= b else []
+
+
+def may_grow(left, right):
+    """Whether growth between the two ends of a bracket may exceed 0, by generous tangents."""
+    a, b = (mode.k * mode.slope.real for mode in (left, right))
+    h = log(right.k / left.k)
+    return max(left.growth_rate + h * a, right.growth_rate - h * b) > 0
+
+
+def _long_waves(branch, low):
+    """A wavenumber <= low from which down, for a decade, growth is what it is as k -> 0: no crest lies lower."""
+    k = _last_regime(branch.solver.flow, low)
+    growth, power = _as_k_vanishes(branch, k)
+    finer = branch.solver.rough(_FINER)
+    for _ in range(_DECADES):
+        if not branch.reach(k / _DECADE):
+            raise ModeLost(branch.why_lost(k / _DECADE))
+        nodes = [_heard(finer, node) for part in branch.segments for node in part if k / _DECADE < node.k <= k]
+        if nodes and all(_FACTOR > node.growth_rate / growth(node.k) > 1 / _FACTOR and
+                         abs(node.k * node.slope.real / node.growth_rate - power) < _CHANGE for node in nodes):
+            return max(node.k for node in nodes)
+        k /= _DECADE
+    raise ModeLost(f"{branch.solver.flow}: growth follows no power of k down to k = {k:.1e}")
+
+
+def _as_k_vanishes(branch, k):
+    """Growth as a power of k, (function of k, the power), at a wavenumber far below k."""
+    solver, start = branch.solver, branch.start
+    k = min(_VANISHING, k / _DECADE**3)
+    limit = complex(solver.flow.long_wave(np.array([k]))[0])
+    mode = solver.solve(k, limit / solver.width(k), (start.degree, start.x, start.y))
+    power = k * mode.slope.real / mode.growth_rate if mode.growth_rate else 0.0
+    if abs(mode.sigma / limit - 1) > _AGREEMENT or not _POWERS[0] < power < _POWERS[1]:
+        raise ModeLost(f"{solver.flow}: growth follows no power of k at k = {k:.1e}")
+    return lambda other: mode.growth_rate * (other / k) ** power, power
+
+
+def _last_regime(flow, low):
+    """The largest wavenumber low / 10^j below which the long-wave law keeps its powers of k."""
+    k = low / _DECADE ** np.arange(_DECADES)
+    with np.errstate(all="ignore"):
+        here, ahead = np.split(np.asarray(flow.long_wave(np.concatenate((k, 1.01 * k))), dtype=complex), 2)
+        powers = np.array([np.log(np.abs(part(ahead) / part(here))) / log(1.01) for part in (np.real, np.imag)])
+    powers = np.where(np.isfinite(powers), powers, 0.0)
+    changed = np.flatnonzero(np.any(np.abs(np.diff(powers, axis=1)) > _REGIME, axis=0))
+    return float(k[changed[-1] + 1 if len(changed) else 0])
+
+
+def crest(solver, left, right):
+    """The `Maximum` between two modes that bracket it: secants of the analytic slope, kept inside the bracket.
+
+    The curvature is that of the parabola through the last three slopes, as long as those are apart.
+    """
+    low, high, scatter = left, right, 0.0
+    before, now = sorted((left, right), key=lambda end: -abs(end.slope.real))
+    curvature, k = _bend(left, right), _hermite(left, right)
+    for _ in range(_ITERATIONS):
+        near = low if k - low.k < high.k - k else high
+        (earlier, before), (now, again) = (before, now), _moved(solver, near, k, abs(k - near.k) < _NEAR * k)
+        low, high = (now, high) if now.slope.real > 0 else (low, now)
+        if min(abs(a.k - b.k) for a, b in combinations((now, before, earlier), 2)) > _APART * now.k:
+            curvature = _bend(now, before) + _bend(now, earlier) - _bend(before, earlier)
+        scatter = max(scatter, _SCATTER * abs(again - now.slope))
+        step, noise = -now.slope.real / curvature, now.slope_error + scatter
+        if again != now.slope and abs(step) < max(_SETTLED * now.k, 0.1 * noise / abs(curvature)):
+            break
+        k = now.k + step if low.k < now.k + step < high.k else (low.k + high.k) / 2
+    error = float((abs(now.slope.real) + noise) / abs(curvature))
+    status = now.status
+    if is_resolved(status) and not error <= max(solver.tolerance, _K_TOLERANCE) * now.k:
+        status = f"error {error:.1e} of k_max exceeds tolerance"
+    measured = error_of_maximum(solver, now) if now.growth_rate > 0 else None
+    return Maximum(now.k, error, now, status, measured)
+
+
+def _bend(one, other):
+    """Mean curvature of growth between two modes."""
+    return (other.slope.real - one.slope.real) / (other.k - one.k)
+
+
+def middle_of(solver, left, right):
+    """A mode near the crest between two that bracket it, and the curvature of growth in log k there, roughly."""
+    k = _hermite(left, right)
+    a, b = (mode.k * mode.slope.real for mode in (left, right))
+    return _moved(solver, left if k - left.k < right.k - k else right, k)[0], (b - a) / log(right.k / left.k)
+
+
+def _moved(solver, near, k, twice=False):
+    """The mode `near` at a wavenumber close by, and its slope; from the vectors before they were refined once more,
+    where that is done `twice`: the difference shows how far rounding scatters slopes where another mode is near.
+    """
+    try:
+        mode = solver.solve(k, near.rate + (k - near.k) * near.rate_slope, (near.degree, near.x, near.y))
+        if not abs(solver.overlap(near, mode) - 1) < _OVERLAP:
+            mode = Walk(solver, near).to(k)
+    except ModeLost:
+        mode = Walk(solver, near).to(k)
+    return (solver.solve(k, mode.rate, (mode.degree, mode.x, mode.y)) if twice else mode), mode.slope
+
+
+def _hermite(low, high):
+    """Zero of the growth slope between two modes, from the cubic through values and slopes in log k."""
+    a, b = low.k * low.slope.real, high.k * high.slope.real
+    h = log(high.k / low.k)
+    secant = (high.growth_rate - low.growth_rate) / h
+    roots = np.roots((3 * (a + b - 2 * secant), 2 * (3 * secant - 2 * a - b), a))
+    inside = [root.real for root in roots if abs(root.imag) < 1e-12 and 0 < root.real < 1]
+    return low.k * exp(h * (inside[0] if len(inside) == 1 else a / (a - b)))

@@ -1,0 +1,91 @@
+"""All finite eigenvalues of a pencil: the dense problem with its infinite ones deflated.
+
+Only the momentum and kinematic rows of B are non-zero. With B = E B_r (E picks those rows) and
+G = B_r (A - shift B)^{-1} E, the finite eigenvalues are rate = shift + 1/theta for the non-zero
+eigenvalues theta of G. The infinite ones, defective in the pencil because pressure only enforces
+continuity, become semisimple zeros of G. How many are finite follows from the structure alone, so that
+nothing is filtered by size.
+"""
+
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import Any
+from weakref import proxy
+
+import numpy as np
+from scipy.linalg import qr
+
+from ..errors import ModeLost
+
+_LARGEST = 1300  # unknowns of a dense problem
+_SHIFT = 0.01 - 0.013j  # tried when the pencil is singular at rate 0
+_SINGULAR = 1e14  # ratio of the two largest theta above which rate 0 is taken for an eigenvalue
+_SMALL = 10  # degree of the pencil whose finite eigenvalues are counted
+
+
+def dense_degrees(solver, first, step=1):
+    """Degrees for dense problems, from rung `first` on, as far as one takes no longer than about a second."""
+    layers = len(solver.assembly.system.fields)
+    affordable = [degree for degree in solver.degrees if degree * layers <= _LARGEST] or solver.degrees[:1]
+    chosen = list(affordable[first::step])
+    return chosen if chosen[-1:] == list(affordable[-1:]) else [*chosen, affordable[-1]]
+
+
+def finite_rates(solver, degree, symbols):
+    """Return the finite eigenvalues of the pencil of this degree, all of them, by decreasing real part."""
+    pencil, count = solver.pencil(degree), _finite_count(solver, degree)
+    theta, shift = _theta(pencil, pencil.weights(symbols).value, count)
+    rates = shift + 1 / theta[:count]
+    rates = rates[np.isfinite(rates)]
+    if not len(rates):
+        raise ModeLost(f"{solver.flow}: no eigenvalue at degree {degree} is a number in double precision")
+    return rates[np.argsort(-rates.real)]
+
+
+def _theta(pencil, weights, rank=None):
+    """Eigenvalues of G by decreasing size, and the shift; only `rank` of them if G is known to have that rank."""
+    rows = pencil.rate_rows
+    columns = np.zeros((pencil.size, len(rows)))
+    columns[rows, np.arange(len(rows))] = 1
+    theta = np.zeros(0)
+    for shift in (0.0, _SHIFT):
+        try:
+            response = pencil.factors(weights, shift).solve(columns)
+            theta = _eigenvalues(pencil.b(weights[:, None], response)[rows], rank)
+        except np.linalg.LinAlgError:  # singular, or not finite
+            continue
+        theta = theta[np.argsort(-np.abs(theta))]
+        if np.abs(theta[0]) < _SINGULAR * np.abs(theta[1:2]).sum():
+            break
+    return theta, shift
+
+
+def _eigenvalues(g, rank):
+    """Eigenvalues of g; the non-zero ones alone from g = q r, which has those of r q."""
+    if rank is None or rank >= len(g):
+        return np.linalg.eigvals(g)
+    q, r, order = qr(g, pivoting=True, check_finite=False)
+    return np.linalg.eigvals(r[:rank] @ q[order, :rank])
+
+
+def _finite_count(solver, degree):
+    """How many eigenvalues are finite: one per degree for every layer that carries the rate, plus a constant."""
+    system = solver.assembly.system
+    count = _smallest_count(_Structure(system.pattern, proxy(solver.assembly)))
+    return count + (degree - _SMALL) * system.dynamic_layers
+
+
+@dataclass(frozen=True)
+class _Structure:
+    """What the number of finite eigenvalues depends on, and an assembly that has it: a proxy, to keep no matrices."""
+
+    pattern: tuple
+    assembly: Any = field(compare=False)
+
+
+@lru_cache(maxsize=32)
+def _smallest_count(structure):
+    """Finite eigenvalues at the smallest degree: read off the gap in theta with all symbols 1."""
+    small = structure.assembly.pencil(_SMALL)
+    sizes = np.abs(_theta(small, np.ones(len(small.parts)))[0])
+    return int(np.argmin(sizes[1:] / np.maximum(sizes[:-1], np.finfo(float).tiny))) + 1

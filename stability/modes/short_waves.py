@@ -1,0 +1,118 @@
+"""Whether the equations of a flow are well posed: C and the growth of short waves through its layers.
+
+In a layer whose short waves grow without bound (`flows.rheology`) the model itself fails.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..equations.layer import numbers
+from ..flows.base import check_flow
+from ..flows.rheology import condition, ill_posed, short_wave_growth
+from ..numerics.threads import one_thread
+
+POINTS = 201  # heights of a layer at which C is looked at
+
+_INSIDE = 1e-9  # distance from an edge, in s, at which a limit is taken
+
+
+@dataclass(frozen=True)
+class Strip:
+    """An ill-posed part of a layer: from `low` to `high` above the layer's lower edge."""
+
+    layer: str
+    low: float
+    high: float
+
+    def __str__(self):
+        return f"{self.layer} is ill posed between heights {self.low:.4g} and {self.high:.4g} above its lower edge"
+
+
+@dataclass(frozen=True, eq=False)
+class WellPosedness:
+    """C and the growth of short waves through the sheared layers of a flow.
+
+    Arrays have shape (points,), layer after layer from below: `layer` name, `height` above its lower
+    edge, `C`, `short_waves` = largest lambda / k^2 and `ill` = whether it is positive. `strips` are the
+    ill-posed parts.
+
+    `flow` is what was asked about. Units: `height` L, `C` a number, `short_waves` V L. Raises nothing.
+
+    >>> from stability import flows
+    >>> found = well_posedness(flows.RollWave(slope_deg=32.6), 3)
+    >>> found.ill_posed, found.C.shape, len(found.strips)
+    (True, (3,), 1)
+    """
+
+    flow: Any
+    layer: tuple
+    height: np.ndarray
+    C: np.ndarray
+    short_waves: np.ndarray
+    ill: np.ndarray
+    strips: tuple
+
+    @property
+    def ill_posed(self):
+        """Whether short waves grow without bound anywhere."""
+        return bool(self.strips)
+
+
+@one_thread
+def well_posedness(flow, points=POINTS):
+    """Return the `WellPosedness` of a flow, at `points` points of each of its layers.
+
+    >>> from stability import flows
+    >>> well_posedness(flows.RollWave(slope_deg=28.0)).ill_posed
+    False
+
+    In the scales of the flow: heights in L, the growth of short waves over k^2 in V L. Raises ParameterError for what
+    is no flow.
+    """
+    parts, strips = [], []
+    for layer in check_flow(flow).layers(numbers(flow)):
+        s = (1 - np.cos(np.pi * np.arange(points) / (points - 1))) / 2
+        height = layer.height(s)
+        ratio, alpha, eta, rho = _coefficients(layer, s)
+        ill = ill_posed(ratio, alpha)
+        parts.append((np.full(points, layer.name), height, condition(ratio, alpha),
+                      short_wave_growth(eta, ratio, alpha, rho), ill))
+        strips += _strips(layer, s, ill)
+    names, heights, conditions, growths, ills = (np.concatenate(column) for column in zip(*parts, strict=True))
+    return WellPosedness(flow, tuple(names.tolist()), heights, conditions, growths, ills, tuple(strips))
+
+
+def ill_posed_somewhere(flow, points=POINTS):
+    """Whether some layer of the flow is ill posed at one of as many heights."""
+    s = (1 - np.cos(np.pi * np.arange(points) / (points - 1))) / 2
+    coefficients = (_coefficients(layer, s) for layer in flow.layers(numbers(flow)))
+    return any(np.any(ill_posed(ratio, alpha)) for ratio, alpha, *_ in coefficients)
+
+
+def _coefficients(layer, s):
+    """beta / eta, alpha, eta and rho at the points s, as arrays; the limit where an edge gives 0/0."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        at, inside = (np.array([np.broadcast_to(value, s.shape)
+                                for value in (base.beta / base.eta, base.alpha, base.eta, base.rho)], dtype=float)
+                      for base in (layer.base(s), layer.base(np.clip(s, _INSIDE, 1 - _INSIDE))))
+    return np.where(np.isnan(at), inside, at)
+
+
+def _strips(layer, s, ill):
+    """The ill-posed intervals between points of either kind, their ends bisected."""
+    changes = np.flatnonzero(ill[1:] != ill[:-1])
+    ends = [_edge(layer, s[i], s[i + 1], ill[i]) for i in changes]
+    ends = ([0.0] if ill[0] else []) + ends + ([1.0] if ill[-1] else [])
+    heights = layer.height(np.array(ends)) if ends else []
+    return [Strip(layer.name, float(low), float(high))
+            for low, high in zip(heights[::2], heights[1::2], strict=True)]
+
+
+def _edge(layer, low, high, ill_below):
+    for _ in range(60):
+        middle = (low + high) / 2
+        ratio, alpha, _, _ = _coefficients(layer, np.array([middle]))
+        low, high = (middle, high) if ill_posed(ratio, alpha)[0] == ill_below else (low, middle)
+    return middle

@@ -1,0 +1,261 @@
+"""The solver of one flow: refines a mode at the degree it needs, with error bars."""
+
+from functools import cached_property, lru_cache
+
+import numpy as np
+
+from ..checks import check_integer, check_tolerance
+from ..equations.pencil import Layout, Pencil, Weights, weights_of
+from ..equations.system import System
+from ..equations.table import Table
+from ..flows.base import check_flow
+from ..numerics.refine import refine, refine_many
+from ..status import RESOLVED
+from .cutoff import neglected
+from .mode import Mode
+from .response import data_error, spread_of
+
+DEGREES = (8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 128, 160, 192, 256, 320,
+           384, 512)
+TOLERANCE = 1e-10  # default bound on error / |sigma| for a resolved mode
+
+_FAR_BELOW = 1e-15  # relative truncation error that is aimed at with the default tolerance
+_LEAST = 32  # degree of the smallest table of entries
+_SMALL = 1024  # degree times terms of the longest series up to which layouts, some megabytes each, are kept ...
+_LAYOUTS, _TABLES = 48, 8  # ... for other flows, and how many
+_TOGETHER = 64, 4096  # points refined at once, and those times the degree: bounds the memory
+_EPS = np.finfo(float).eps
+_REMEMBERED = 10_000  # wavenumbers whose functions and weights are kept
+_ROUNDING = 4.0  # standard deviations of the accumulated rounding that the error bar spans
+
+
+class Assembly:
+    """The pencils of a system of equations, each degree assembled when first asked for.
+
+    Where their entries lie is kept for all flows with the same structure.
+    """
+
+    def __init__(self, flow):
+        self._flow = flow
+        self._values, self._pencils = {}, {}
+
+    @cached_property
+    def system(self):
+        return System(self._flow)
+
+    def pencil(self, degree):
+        if degree not in self._pencils:
+            layout = self._layout(degree)
+            if layout.table not in self._values:
+                self._values[layout.table] = layout.table.values(self.system.coefficients)
+            self._pencils[degree] = Pencil(layout, self._values[layout.table], self.system)
+        return self._pencils[degree]
+
+    @property
+    def small(self):
+        """Whether its matrices take a few megabytes at most."""
+        return all(table.degree * table.structure.longest <= _SMALL for table in self._values)
+
+    def _layout(self, degree):
+        structure, size = self.system.structure, max(_LEAST, 1 << int(degree - 1).bit_length())
+        if size * structure.longest <= _SMALL:
+            return _layout_of(structure, degree, size)
+        large = (table for table in self._values if table.degree == size)
+        return Layout(next(large, None) or Table(structure, size), degree)
+
+    def serving(self, flow):
+        """Return this assembly if its equations are those of `flow` too, else a new one.
+
+        Parameters that enter only through functions of k leave the matrices alone.
+        """
+        other = Assembly(flow)
+        return self if other.system == self.system else other
+
+
+@lru_cache(maxsize=_LAYOUTS)
+def _layout_of(structure, degree, size):
+    return Layout(_table_of(structure, size), degree)
+
+
+@lru_cache(maxsize=_TABLES)
+def _table_of(structure, degree):
+    return Table(structure, degree)
+
+
+class Solver:
+    """Refines modes of one flow to a relative tolerance, within a largest degree.
+
+    The degree is raised until the truncation error is half the tolerance asked for, or below rounding; with the
+    default tolerance and smaller ones until it is far below, since that costs little. Without `bars` errors are
+    truncation alone.
+    """
+
+    def __init__(self, flow, tolerance=TOLERANCE, max_degree=DEGREES[-1], assembly=None, bars=True):
+        self.flow = check_flow(flow)
+        self.bars = bars
+        self.tolerance = tolerance
+        self.truncation = 0.5 * tolerance if tolerance > TOLERANCE else min(0.5 * tolerance, _FAR_BELOW)
+        self.degrees = tuple(d for d in DEGREES if d <= max_degree) or (max_degree,)
+        self.assembly = assembly or Assembly(flow)
+        self.pencil = self.assembly.pencil
+        self._known = {}
+
+    @property
+    def halves(self):
+        """Solvers of the symmetry classes of the flow: this one alone where it has none."""
+        return self._halves or (self,)  # not kept: a solver that refers to itself would outlive its use
+
+    @cached_property
+    def _halves(self):
+        parts = self.flow.halves()
+        return () if parts == (self.flow,) else tuple(Solver(half, self.tolerance, self.degrees[-1], bars=self.bars)
+                                                      for half in parts)
+
+    def prepare(self, k):
+        """Evaluate the flow's functions of k, and the weights, for a whole array (count,) at once."""
+        k = k[[one not in self._known for one in k.tolist()]]
+        if not len(k):
+            return
+        symbols = {"k": (k, np.ones_like(k), np.zeros_like(k)), **self.flow.evaluate(k)}
+        weights = weights_of(self.assembly.system.structure, symbols)
+        if len(self._known) > _REMEMBERED:
+            self._known.clear()
+        rows = weights.value.T.copy(), weights.slope.T.copy(), weights.spread.T.copy()
+        for index, one in enumerate(k.tolist()):
+            self._known[one] = symbols, rows, index
+
+    def _at(self, k):
+        k = float(k)
+        if k not in self._known:
+            self.prepare(np.array([k]))
+        return self._known[k]
+
+    def symbols(self, k):
+        """Return {name: (value, slope, error)} of the symbols at one wavenumber."""
+        symbols, _, index = self._at(k)
+        return {name: tuple(values[index] for values in triple) for name, triple in symbols.items()}
+
+    def weights(self, k):
+        """Return the weights of the pencils at one wavenumber, (parts,), or at a list of them, (parts, points)."""
+        if isinstance(k, list):
+            each = [self.weights(one) for one in k]
+            return Weights(*(np.array([getattr(one, name) for one in each]).T for name in ("value", "slope", "spread")))
+        _, rows, index = self._at(k)
+        return Weights(*(array[index] for array in rows))
+
+    def width(self, k):
+        """sigma / rate at wavenumber k."""
+        return k ** (1 + self.flow.order)
+
+    def rough(self, tolerance):
+        """Return a solver of the same equations, no more accurate than this and without bars."""
+        return Solver(self.flow, max(self.tolerance, tolerance), self.degrees[-1], self.assembly, bars=False)
+
+    def solve(self, k, rate, vectors=None, degree=None, glance=False):
+        """Return the mode next to `rate`, at the first degree that resolves it; at the first one tried for a `glance`.
+
+        `vectors` is (degree, x, y) of a nearby mode, if known. Raises ModeLost where the iteration
+        does not settle; a mode still unresolved at the largest degree is returned with that status.
+        """
+        start = self.degrees.index(degree or (vectors[0] if vectors else self.degrees[min(2, len(self.degrees) - 1)]))
+        for degree in self.degrees[start:]:
+            pencil = self.pencil(degree)
+            x, y = transfer(self, vectors, degree) if vectors else (None, None)
+            eigen = refine(pencil, self.weights(k), rate, x, y, self.bars)
+            mode = self._mode(k, degree, eigen)
+            if glance or self.fits(mode):
+                break
+            rate, vectors = eigen.rate, (degree, eigen.x, eigen.y)
+        return mode
+
+    def refined(self, mode):
+        """Return a mode of a rougher solver as this one has it."""
+        return self.solve(mode.k, mode.rate, (mode.degree, mode.x, mode.y), self.likely_degree(mode))
+
+    def likely_degree(self, mode):
+        """The degree to try first where a rougher solver has found this mode: a higher one where its own is too low."""
+        rung = self.degrees.index(mode.degree)
+        return self.degrees[min(rung + (not self.fits(mode)), len(self.degrees) - 1)]
+
+    def solve_many(self, wavenumbers, rates, vectors, degree):
+        """Return the modes at many wavenumbers at once, None where more work is needed.
+
+        `rates` (points,) and right and left `vectors` (points, size) of this degree are good guesses.
+        """
+        modes = []
+        count = max(1, min(_TOGETHER[0], _TOGETHER[1] // degree))
+        for first in range(0, len(wavenumbers), count):
+            part = slice(first, first + count)
+            eigen = refine_many(self.pencil(degree), self.weights(wavenumbers[part]), rates[part],
+                                *(rows[part] for rows in vectors), self.bars)
+            found = [self._mode(k, degree, one) for k, one in zip(wavenumbers[part], eigen.split(), strict=True)]
+            modes += [mode if settled and self.fits(mode) else None
+                      for mode, settled in zip(found, eigen.settled, strict=True)]
+        return modes
+
+    def fits(self, mode):
+        """Whether the truncation error is as small as is aimed at, or below rounding."""
+        return mode.truncation <= max(mode.rounding, self.truncation * abs(mode.sigma))
+
+    def resolves(self, mode):
+        """Whether the truncation error is within the tolerance, or could be at a larger degree."""
+        return mode.degree < self.degrees[-1] or mode.truncation <= self.tolerance * abs(mode.sigma)
+
+    def overlap(self, old, mode):
+        """Product of the two biorthogonal overlaps of a new mode with an old one: near 1 for one mode, 0 for two."""
+        x, y = transfer(self, (old.degree, old.x, old.y), mode.degree)
+        weights, pencil = self.weights(mode.k).value, self.pencil(mode.degree)
+        return np.vdot(y, pencil.b(weights, mode.x)) * np.vdot(mode.y, pencil.b(weights, x))
+
+    def next_degree(self, mode):
+        """The degree to try first near this mode: one rung lower where it is over-resolved."""
+        rung = self.degrees.index(mode.degree)
+        return self.degrees[rung - 1] if rung and mode.truncation < 1e-7 * mode.rounding else mode.degree
+
+    def _mode(self, k, degree, eigen):
+        width = self.width(k)
+        sigma = width * eigen.rate
+        rounding = width * _ROUNDING * eigen.rounding + width * eigen.spread + _EPS * abs(sigma)
+        lacking = 0.0  # at cuts: no degree mends that
+        if self.bars and self.flow.unbounded:
+            lacking = neglected(self, k, degree, eigen)
+        if self.bars and self.flow.chopped:
+
+            rounding += spread_of(self, k, degree, eigen, self.flow.chopped)
+        truncation = width * eigen.truncation
+        error = truncation + rounding + lacking
+        status = RESOLVED
+        if not error <= self.tolerance * abs(sigma):  # nor where it is not a number
+            status = f"error {error:.1e} exceeds tolerance at degree {degree}"
+        slope = width * eigen.slope + (1 + self.flow.order) * sigma / k
+        return Mode(self.flow, float(k), complex(sigma), float(error), complex(slope), degree, status,
+                    float(truncation), float(rounding), eigen.rate, eigen.slope, eigen.x, eigen.y,
+                    self._data_error(k, degree, eigen))
+
+    def _data_error(self, k, degree, eigen):
+        """What the errors of a measured base flow do to the growth rate, None without such errors or without bars."""
+        if not self.bars or self.flow.data is None:
+            return None
+
+        return data_error(self, k, degree, eigen)
+
+
+def check_accuracy(tolerance, max_degree, names=("tolerance", "max_degree")):
+    """Return both as numbers, or raise a ParameterError that uses these names."""
+    return check_tolerance(tolerance, names[0]), check_integer(max_degree, names[1], DEGREES[0], DEGREES[-1])
+
+
+def transfer(solver, vectors, degree):
+    """Eigenvectors (degree, x, y) of one degree as vectors of another: series are padded or cut."""
+    old, x, y = vectors
+    if old == degree:
+        return x, y
+    target = solver.pencil(degree).layout
+    return tuple(_fit(vector, *places, target.size) for vector, places in
+                 zip((x, y), solver.pencil(old).layout.common(target), strict=True))
+
+
+def _fit(vector, source, target, size):
+    fitted = np.zeros(size, vector.dtype)
+    fitted[target] = vector[source]
+    return fitted

@@ -1,0 +1,278 @@
+"""Following one mode along k: predictor, corrector, and the refusal to jump to another mode.
+
+The predictor extrapolates the rate (cubic, from values and slopes at two points) and the vectors
+(linear) in log k. A step is accepted when the new and old eigenvectors are biorthogonal partners,
+y_old^H B x_new * y_new^H B x_old near 1 (between different modes the product vanishes), and when the rates
+and slopes at its two ends fit one smooth curve.
+"""
+
+from dataclasses import dataclass
+from math import ceil, copysign, exp, floor, log
+
+import numpy as np
+
+from ..errors import ModeLost, StepsExhausted
+from .solver import transfer
+
+_FIRST_STEP = 0.3  # in log k
+_LARGEST_STEP = 0.6
+_CLOSE = 0.02  # step below which a collision is looked for, and a rough walk goes on with full accuracy
+_NARROW = 5e-3  # step that tells of another mode near by
+_SMALLEST_STEP = 1e-8
+_PREDICTION = 0.05  # relative error of the predictor at which the step length is kept
+_BEND = 0.1  # largest departure of a step from the mean of its end slopes, relative
+_OVERLAP = 0.4  # largest deviation of the overlap from 1
+_STEPS, _STRETCH = 1000, 100  # attempts, and after how many of them it is asked whether those left can suffice
+_PACE = 0.1  # least way in log k in every _STRETCH attempts of a walk that has no end
+_BLIND = 100  # attempts in a row that the largest degree does not resolve
+_TRUST = 0.01  # largest relative error of a mode from which a walk goes on
+_RUNG = 0.05  # spacing in log k of the ladder that a walk without an end lands on
+
+
+@dataclass(frozen=True)
+class Collision:
+    """Two real modes meeting at k (growth rates equal there), or a pair splitting into two."""
+
+    k: float
+    sigma: float
+    becomes: str  # "pair" or "real"
+
+    def __str__(self):
+        outcome = "a complex pair (the one travelling downstream is followed)" if self.becomes == "pair" else \
+            "two real modes (the less damped one is followed)"
+        return f"two modes collide at k = {self.k:.6g}, sigma = {self.sigma:.6g}, and become {outcome}"
+
+
+@dataclass(frozen=True)
+class Encounter:
+    """Where two modes nearly meet: steps as short as `step`, in log k, are needed at k to tell which goes on."""
+
+    k: float
+    step: float
+
+    def __str__(self):
+        return (f"two modes nearly meet at k = {self.k:.6g}: which of them goes on is told by steps of {self.step:.1g} "
+                "relative, and may be the other at slightly different parameters")
+
+
+@dataclass(frozen=True)
+class Path:
+    """Modes at the wavenumbers asked for, in that order, and the collisions met on the way.
+
+    `lost` says why the mode could not be followed, if it could not; the modes then end before it.
+    """
+
+    modes: tuple
+    collisions: tuple
+    lost: ModeLost | None = None
+
+
+def follow(solver, start, wavenumbers):
+    """Follow the mode `start` through `wavenumbers`, a monotone sequence leading away from start.k, one by one."""
+    walk, modes = Walk(solver, start), []
+    try:
+        for k in np.asarray(wavenumbers, dtype=float).tolist():
+            modes.append(walk.to(k))
+    except ModeLost as reason:
+        return Path(tuple(modes), tuple(walk.collisions), reason)
+    return Path(tuple(modes), tuple(walk.collisions))
+
+
+class Walk:
+    """The state of a walk along k: the last two modes, the step in log k, the collisions so far.
+
+    `segments` lists the modes visited, a new list after each collision. Where steps get short the walk goes on with
+    the solver `closer`, if there is one.
+    """
+
+    def __init__(self, solver, start, closer=None):
+        self.solver, self.closer = solver, closer
+        self.before, self.now = None, start
+        self.step, self.shortest = _FIRST_STEP, (_FIRST_STEP, start.k)
+        self.collisions = []
+        self.segments = [[start]]
+        self._attempts, self._blind, self._behind = 0, 0, start.k
+
+    def to(self, k):
+        """Step to wavenumber k."""
+        attempts, behind = 0, self.now.k
+        while gap := log(k / self.now.k):
+            if attempts and attempts % _STRETCH == 0:
+                if abs(log(self.now.k / behind)) * (_STEPS - attempts) < abs(gap) * _STRETCH:
+                    raise self._lost(f"{_STEPS} steps do not reach k = {k:g}", StepsExhausted)
+                behind = self.now.k
+            attempts += 1
+            self._watch()
+            self._advance(k if abs(gap) <= self.step else self.now.k * exp(copysign(self.step, gap)))
+        return self.now
+
+    def beyond(self, k):
+        """Step on until wavenumber k lies behind, by the same steps whichever it is."""
+        side = copysign(1.0, log(k / self.segments[0][0].k))
+        if self.solver.flow.functions:
+            self.solver.prepare(np.array(_ladder(self.now.k, k)))
+        while side * log(k / self.now.k) > 0:
+            if self._attempts and self._attempts % _STRETCH == 0:
+                if abs(log(self.now.k / self._behind)) < _PACE:
+                    raise self._lost(f"{_STRETCH} steps took it from k = {self._behind:.6g} no further", StepsExhausted)
+                self._behind = self.now.k
+            self._attempts += 1
+            self._watch()
+            self._advance(_rung(self.now.k, side * self.step))
+
+    @property
+    def encounter(self):
+        """Where the steps were shortest, an `Encounter`, if so short that another mode must have been near."""
+        step, k = self.shortest
+        collided = any(abs(log(one.k / k)) < _LARGEST_STEP for one in self.collisions)  # that is told as such
+        return Encounter(k, step) if step < _NARROW and not collided else None
+
+    def _watch(self):
+        """Give up where the largest degree has not resolved the mode for long."""
+        self._blind = 0 if self.solver.resolves(self.now) else self._blind + 1
+        if self._blind > _BLIND:
+            raise self._lost(f"degree {self.now.degree} does not resolve it any more", StepsExhausted)
+
+    def _advance(self, k):
+        """Take one step to k, or shorten the step, or cross a collision."""
+        length = abs(log(k / self.now.k))
+        rate, vectors = self._predict(k)
+        try:
+            mode = self.solver.solve(k, rate, vectors, self.solver.next_degree(self.now))
+            fits = self._trusted(mode) and self._same_kind(mode) and self._smooth(mode)
+            deviation = abs(self.solver.overlap(self.now, mode) - 1) if fits else np.inf
+        except ModeLost:
+            deviation = np.inf
+        if deviation < _OVERLAP:
+            self._accept(mode)
+            miss = abs(mode.rate - rate) / (abs(mode.rate) + abs(mode.k * mode.rate_slope)) + 1e-12
+            factor = min(2.0, max(0.5, (_PREDICTION / miss) ** 0.25))
+            self.step = min(_LARGEST_STEP, max(length, self.step if length < self.step else 0) * factor)
+            return
+        self.step = length / 3
+        self.shortest = min(self.shortest, (self.step, self.now.k))
+        if self.step < _CLOSE and self.closer:
+            self._look_closer()
+            return
+        if self.step < _CLOSE and self._cross(k):
+            return
+        if self.step < _SMALLEST_STEP:
+            raise self._lost(f"no mode overlaps its neighbour at k = {k:.6g}")
+
+    def _look_closer(self):
+        """Go on from here with full accuracy."""
+        self.solver, self.closer = self.closer, None
+        now = self.solver.solve(self.now.k, self.now.rate, (self.now.degree, self.now.x, self.now.y))
+        self.segments[-1][-1] = self.now = now
+
+    def _trusted(self, mode):
+        """Whether the mode is resolved well enough to be followed, if not to the tolerance."""
+        return mode.error <= max(_TRUST, self.solver.tolerance) * abs(mode.sigma)
+
+    def _smooth(self, mode):
+        """Whether the rates and slopes at both ends of the step belong to one smooth curve in log k."""
+        h, rise = log(mode.k / self.now.k), mode.rate - self.now.rate
+        a, b = (h * end.k * end.rate_slope for end in (self.now, mode))
+        return abs(rise - (a + b) / 2) <= _BEND * (abs(rise) + abs(a) + abs(b)) + 1e-9 * abs(mode.rate)
+
+    def _same_kind(self, mode):
+        """Real stays real and complex stays complex, unless a collision has been found."""
+        real = abs(mode.rate.imag) < 1e-10 * abs(mode.rate)
+        return not self.solver.pencil(mode.degree).real or real == (self.now.rate.imag == 0)
+
+    def _accept(self, mode):
+        self.before, self.now = self.now, mode
+        self.segments[-1].append(mode)
+
+    def _lost(self, why, kind=ModeLost):
+        return kind(f"{self.solver.flow}: the mode is lost at k = {self.now.k:.6g}, "
+                    f"sigma = {self.now.sigma:.6g}: {why}")
+
+    def _predict(self, k):
+        """Extrapolate rate and vectors to k from the last two modes."""
+        now, before = self.now, self.before
+        t = log(k / now.k)
+        slope = now.k * now.rate_slope
+        vectors = (now.degree, now.x, now.y)
+        if before is None:
+            return now.rate + slope * t, vectors
+        h = log(now.k / before.k)
+        secant = (now.rate - before.rate) / h
+        bend = (slope - secant) / h
+        twist = (slope + before.k * before.rate_slope - 2 * secant) / h**2
+        rate = now.rate + t * (slope + t * (bend + twist * (t + h)))
+        x, y = transfer(self.solver, (before.degree, before.x, before.y), now.degree)
+        return rate, (now.degree, _extrapolate(now.x, x, t / h), _extrapolate(now.y, y, t / h))
+
+    def _cross(self, k):
+        """Step across a collision of two real modes (or of a conjugate pair) just ahead; True if there is one.
+
+        Near it rate = m(k) +- sqrt(q(k)) with m and q smooth and q = 0 at the collision.
+        """
+        now, before = self.now, self.before
+        if before is None or not self.solver.pencil(now.degree).real:
+            return False
+        slope = now.rate_slope
+        if now.rate.imag == 0:
+            ahead = _zero(before.k, before.rate_slope.real**-2, now.k, slope.real**-2)
+            middle = now.rate.real + 2 * (ahead - now.k) * slope.real
+            half = -1j * abs(now.rate.real - middle)
+        else:
+            ahead = now.k - now.rate.imag / (2 * slope.imag)
+            middle = now.rate.real + (ahead - now.k) * slope.real
+            half = abs(now.rate.imag)
+        reach = (k - now.k) / (ahead - now.k)
+        if not 1 < reach < 1e6:
+            return False
+        distance = min(abs(k - ahead), max(abs(ahead - now.k), 1e-4 * ahead))
+        beyond = ahead + copysign(distance, k - ahead)
+        guess = middle + half * (distance / abs(ahead - now.k)) ** 0.5
+        try:
+            mode = self.solver.solve(beyond, guess, (now.degree, now.x, now.y))
+        except ModeLost:
+            return False
+        if abs(mode.rate - guess) > 0.5 * abs(guess - middle):
+            return False
+        self.collisions.append(self._pin(now if now.rate.imag else mode, "real" if now.rate.imag else "pair"))
+        self.before, self.now = None, mode
+        self.segments.append([mode])
+        self.step = abs(log(beyond / now.k))
+        return True
+
+    def _pin(self, pair, becomes):
+        """Place the collision by Newton on Im(rate)^2 = 0, from the complex side, ever nearer to it."""
+        for nearness in (1e-3, 1e-5):
+            k = pair.k - pair.rate.imag / (2 * pair.rate_slope.imag)
+            near = k + copysign(nearness * k, pair.k - k)
+            if abs(near - k) < abs(pair.k - k):
+                shrink = ((near - k) / (pair.k - k)) ** 0.5
+                middle = pair.rate.real + (k - pair.k) * pair.rate_slope.real
+                pair = self.solver.solve(near, complex(middle, shrink * pair.rate.imag), (pair.degree, pair.x, pair.y))
+        k = pair.k - pair.rate.imag / (2 * pair.rate_slope.imag)
+        rate = pair.rate.real + (k - pair.k) * pair.rate_slope.real
+        return Collision(k, float(self.solver.width(k) * rate), becomes)
+
+
+def _rung(k, step):
+    """The wavenumber a step in log k away, or the last rung of the ladder before it if that is not much nearer."""
+    ahead = k * exp(step)
+    index = log(ahead) / _RUNG
+    rung = exp(_RUNG * (floor(index) if step > 0 else ceil(index)))
+    return rung if abs(log(rung / k)) > 0.5 * abs(step) and (rung - k) * step > 0 else ahead
+
+
+def _ladder(start, end):
+    """The rungs from a little before `start` to a little behind `end`."""
+    low, high = (floor(log(side(start, end)) / _RUNG) for side in (min, max))
+    return [exp(_RUNG * index) for index in range(low - 1, high + 3)]
+
+
+def _extrapolate(now, before, ratio):
+    """Linear extrapolation of vectors, the older one first given the scale of the newer."""
+    scale = np.vdot(before, now) / np.vdot(before, before)
+    return now + ratio * (now - scale * before)
+
+
+def _zero(x0, f0, x1, f1):
+    """Where the straight line through two points vanishes."""
+    return x1 - f1 * (x1 - x0) / (f1 - f0) if f1 != f0 else np.inf

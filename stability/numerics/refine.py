@@ -1,0 +1,215 @@
+"""Two-sided inverse iteration with Rayleigh quotient: one mode from a guess, or many wavenumbers at once.
+
+One LU factorisation of A - rate B near an eigenvalue serves both eigenvectors x and y. The two-sided
+Rayleigh quotient is then wrong only by the product of their errors, and the pair (y, x) yields
+
+    d sigma / d anything = - y^H (d residual matrix) x / (y^H B x),
+
+hence the slope in k, the truncation error (y against the residual beyond the truncation) and the
+rounding error (y against a random rounding of every matrix entry).
+
+At many wavenumbers each has its own factorisation and all else is done together: vectors are the columns of arrays
+(size, points) then, and plain (size,) at one.
+"""
+
+from dataclasses import dataclass, fields, replace
+from functools import lru_cache
+
+import numpy as np
+
+from ..errors import ModeLost
+from .stack import square
+
+_EPS = np.finfo(float).eps
+_TINY = np.finfo(float).tiny
+_FACTORISATIONS = 12
+_ROUNDS = 3  # of factorisations at many points
+_CORRECTIONS = 12
+_VECTOR = 1e-9  # error of a vector, and so of the slope, that is accepted
+_OFFSET = 1e-3  # of a factorisation for corrections from its rate: it must not be singular
+
+
+@dataclass(frozen=True)
+class Eigen:
+    """Eigenvalues of a pencil at several points, arrays (points,) and vectors (points, size), or at a single one.
+
+    `rate` with its `slope` in k; `truncation`, the standard deviation `rounding` and the `spread` from
+    uncertain symbols and coefficients, all in units of the rate; `x`, `y` right and left vectors with y^H B x = 1;
+    `settled` tells where the quotient is converged to rounding.
+    """
+
+    rate: np.ndarray
+    slope: np.ndarray
+    truncation: np.ndarray
+    rounding: np.ndarray
+    spread: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    settled: np.ndarray
+
+    def split(self):
+        """Return the eigenvalues of the points, each on its own."""
+        return [Eigen(*values) for values in zip(*(getattr(self, field.name) for field in fields(self)), strict=True)]
+
+
+def refine(pencil, weights, rate, x=None, y=None, bars=True):
+    """Iterate from a `rate` (and vectors (size,), if known) until the quotient has settled; raise ModeLost if not.
+
+    `weights` are those of one point, (parts,); so are all arrays in the result, without an axis of points.
+    """
+    x, y = (_start(pencil.size) if vector is None else vector for vector in (x, y))
+    y = y.conj()  # y^H from here on
+    for _ in range(_FACTORISATIONS):
+        if pencil.real and not np.imag(rate):
+            rate, x, y = np.real(rate), x.real, y.real
+        factors = _factors(pencil, weights.value, rate)
+        x, y, settled = _iterate(pencil, weights.value, factors, x, y)
+        if settled:
+            found = _quotient(pencil, weights, x, y, settled, bars)
+            return _twice(pencil, weights, found, bars) if factors.uneven else found
+        rate = _rate(pencil, weights.value * pencil.stack.brackets(y, pencil.stack.times(x)))
+        if not np.isfinite(rate):
+            break
+    raise ModeLost(f"inverse iteration near rate {complex(rate):.6g} did not settle")
+
+
+def refine_many(pencil, weights, rate, x, y, bars=True):
+    """Refine good guesses of rates (points,) and vectors (points, size) at many points, whose `weights` are given.
+
+    Without `bars` the rounding is left at 0: a rough look does not need it.
+    """
+    x, y = x.T, y.conj().T
+    if pencil.real and not np.any(np.imag(rate)):
+        rate, x, y = rate.real, x.real, y.real
+    x, y = np.ascontiguousarray(x), np.ascontiguousarray(y)
+    settled, left = np.zeros(len(rate), bool), np.arange(len(rate))
+    for _ in range(_ROUNDS):
+        value = weights.value[:, left]
+        factors = pencil.factors(value, rate[left])
+        x[:, left], y[:, left], settled[left] = _iterate(pencil, value, factors, x[:, left], y[:, left])
+        settled[left] &= ~factors.uneven
+        rate = _rate(pencil, weights.value * pencil.stack.brackets(y, pencil.stack.times(x)))
+        left = left[~settled[left] & ~factors.uneven]
+        if not len(left):
+            break
+    return _quotient(pencil, weights, x, y, settled, bars)
+
+
+def _iterate(pencil, weights, factors, x, y):
+    """Two inverse iterations from either side; return both vectors, and whether their quotient is settled."""
+    x, x_error = _iterated(lambda v: factors.solve(pencil.b(weights, v)), x)
+    y, y_error = _iterated(lambda v: factors.solve_left(pencil.b_left(weights, v)), y)
+    return x, y, _settled(x_error, y_error)
+
+
+def _iterated(step, vector):
+    """Two inverse iterations with one factorisation; return the vector and an estimate of its error.
+
+    Vectors are scaled by one component. The second step shrinks what the first one changed by the
+    ratio of the distances to the wanted and the next eigenvalue, and so will the next.
+    """
+    pivot = np.argmax(np.abs(vector), axis=0)
+    if vector.ndim > 1:
+        pivot = pivot, np.arange(vector.shape[1])
+    start, first = (v / v[pivot] for v in (vector, step(vector)))
+    second = step(first)
+    second = second / second[pivot]
+    change, error = _converging(second - first, second, _size(first - start) / _size(second))
+    return second, error
+
+
+def _twice(pencil, weights, found, bars):
+    """The eigenvalue of uneven matrices by steps with the residual too; the difference joins its error.
+
+    Small unknowns beside large ones get few digits from a factorisation alone. Where those steps do not settle, since
+    other modes are too near, it stays as it was found.
+    """
+    again = _corrected(pencil, weights, found, bars)
+    return replace(again, spread=again.spread + abs(again.rate - found.rate)) if again.settled else found
+
+
+def _corrected(pencil, weights, found, bars):
+    """The eigenvalue by the iteration x - M^{-1} (A - rate B) x with one factorisation M near it (Neumaier 1985).
+
+    M is nearly singular and a step with it mostly lies along the eigenvector: a change of scale, which is taken out.
+    """
+    value, stack, rate, x, y = weights.value, pencil.stack, found.rate, found.x, found.y.conj()
+    if pencil.real and not np.imag(rate):
+        rate, x, y = np.real(rate), x.real, y.real
+    factors = _factors(pencil, value, rate * (1 + _OFFSET))
+    bx, by = pencil.b(value, x), pencil.b_left(value, y)
+    along_x, along_y = x / (by @ x), y / (by @ x)
+    x_change = y_change = 0.0
+    for _ in range(_CORRECTIONS):
+        products = stack.times(x)
+        rate = _rate(pencil, value * stack.brackets(y, products))
+        spread = stack.spread(value * pencil.powers(rate))
+        dx, dy = factors.solve(stack.total(spread, products)), factors.solve_left(stack.total_left(spread, y))
+        dx, dy = dx - along_x * (by @ dx), dy - along_y * (bx @ dy)
+        x, y = x - dx, y - dy
+        x_change, x_error = _converging(dx, x, x_change)
+        y_change, y_error = _converging(dy, y, y_change)
+        settled = _settled(x_error, y_error)
+        if settled:
+            break
+    return _quotient(pencil, weights, x, y, settled, bars)
+
+
+@lru_cache(maxsize=32)
+def _start(size):
+    """Where to start without a better guess: a random vector (size,)."""
+    return np.random.default_rng(1).standard_normal(size)
+
+
+def _factors(pencil, weights, rate):
+    for _ in range(3):
+        try:
+            return pencil.factors(weights, rate)
+        except np.linalg.LinAlgError:  # the rate is an eigenvalue to the last bit
+            rate = rate * (1 + 4 * _EPS) + _TINY
+    raise ModeLost(f"the equations are singular near the rate {complex(rate):.6g}")
+
+
+def _converging(step, vectors, before):
+    """Relative length of the last step, and the error left, given the length of the step before."""
+    change = _size(step) / _size(vectors)
+    return change, change**2 / np.maximum(np.maximum(change, before), _TINY) + _EPS
+
+
+def _settled(x_error, y_error):
+    """Whether the quotient of two vectors with these errors is right to rounding, and its slope nearly so."""
+    return (x_error * y_error < 0.1 * _EPS) & (np.maximum(x_error, y_error) < _VECTOR)
+
+
+def _size(vectors):
+    return np.sqrt(square(vectors).sum(axis=0) if vectors.ndim > 1 else np.vdot(vectors, vectors).real)
+
+
+def _rate(pencil, value):
+    """Rayleigh quotients from the brackets of all parts (parts, points)."""
+    return -value[: pencil.first_b].sum(axis=0) / value[pencil.first_b:].sum(axis=0)
+
+
+def _quotient(pencil, weights, x, y, settled, bars):
+    """Rayleigh quotients of the pairs (y^H, x), (size, points) or of one (size,), with slope in k and errors."""
+    stack, first = pencil.stack, pencil.first_b
+    products = stack.times(x)
+    brackets = stack.brackets(y, products)
+    value = weights.value * brackets
+    norm = -value[first:].sum(axis=0)  # y B x
+    rate = value[:first].sum(axis=0) / norm
+    power = pencil.powers(rate)
+    y = y / norm
+    slope = (weights.slope * brackets * power).sum(axis=0) / norm
+    spread = (weights.spread * np.abs(brackets * power)).sum(axis=0) / np.abs(norm)
+    if pencil.cuts:
+        spread += pencil.cut(weights.value * power, y, x)
+    variance = np.zeros(norm.shape)
+    if bars:
+        variance += stack.squares(weights.value * power, y, x)  # of matrix entries
+        variance += square(value * power).sum(axis=0) / square(norm)  # of the weights, common to a part
+    tail = np.abs(pencil.tail.total(pencil.tail.spread(weights.value * power), pencil.tail.times(x)))
+    beyond = tail.reshape(len(pencil.last), -1, *norm.shape).sum(axis=1)
+    truncation = (beyond * np.abs(y[pencil.last]).max(axis=1)).sum(axis=0)
+    vectors = (np.ascontiguousarray(rows.T) for rows in (x, y.conj()))
+    return Eigen(rate, slope, truncation, _EPS * np.sqrt(variance), spread, *vectors, settled)

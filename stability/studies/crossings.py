@@ -1,0 +1,122 @@
+"""The values of a parameter at which a mode is neutral at one wavenumber: all of them in a range.
+
+At a few values, the columns, all modes near zero growth are taken from dense spectra of two degrees that agree. Each is
+followed to the next column, or back where none arrived; growth and its derivative on the way tell where it crosses
+zero. In an ill-posed flow it is the surface mode that is asked about, at each value the one followed from long waves.
+"""
+
+from itertools import pairwise
+from math import copysign, exp, log
+
+import numpy as np
+
+from ..errors import ModeLost, ParameterError
+from ..modes.branch import surface_branch
+from ..modes.crests import default_mode, depth_of
+from ..modes.listing import near_neutral
+from ..modes.memory import branch_of
+from .ridges import Landscape, may_turn
+from .thresholds import zero_at
+
+_ARC = 0.25  # largest step in the logarithm of the parameter
+_SHORTEST = 1e-4
+_SAME = 1e-3  # relative distance of sigma within which two modes are one
+_ITERATIONS = 60
+
+
+def zeros_at(land: Landscape, k: float):
+    """Return the `Zero`s at wavenumber k by increasing value, the traces of why none is known, and whether any grows.
+
+    The traces are {value: reason} of the columns that could not be computed.
+    """
+    zeros, trouble, grows = [], {}, set()
+    for half, plane in enumerate(land.rough):
+        columns = []
+        for value in land.values():
+            try:
+                modes = _modes(plane, k, value)
+            except ParameterError:
+                continue
+            except ModeLost as reason:
+                trouble[value], modes = str(reason), []
+            grows |= {point.growth > 0 for point in modes} or {False}
+            columns.append((value, modes))
+        for pair in pairwise(columns):
+            zeros += [_refined(land.planes[half], a, b) for a, b in _changes(plane, *pair)]
+    return sorted(zeros, key=lambda zero: zero.value), trouble, grows
+
+
+def _modes(plane, k, value):
+    """Points at k of the modes that matter at a value."""
+    solver = plane.solver(value)
+    if default_mode(plane.flow_at(value)) == "surface":
+        with branch_of(solver, surface_branch) as branch:
+            found, lost = branch.at([k])
+        if lost:
+            raise ModeLost(lost[k])
+        modes = found.values()
+    else:
+        modes, _ = near_neutral(solver, k, depth_of(solver.flow)(k), 0)
+    return [plane.point(k, value, mode) for mode in modes]
+
+
+def _changes(plane, left, right):
+    """Pairs of neighbouring points of opposite growth between two columns (value, points)."""
+    (low, here), (high, there) = left, right
+    arrived = []
+    for start in here:
+        way = [start, *follow(plane, start, high)]
+        if way[-1].value == high:
+            arrived.append(way[-1])
+        yield from _turns(plane, way)
+    for start in there:
+        if not any(_one(start, other) for other in arrived):
+            yield from _turns(plane, [start, *follow(plane, start, low)])
+
+
+def _one(a, b):
+    return abs(a.mode.sigma - b.mode.sigma) < _SAME * abs(a.mode.sigma)
+
+
+def follow(plane, start, value):
+    """Yield points of the mode from one value to another; ends early where it is lost."""
+    now, step, side = start, _ARC, copysign(1.0, log(value / start.value))
+    while now.value != value:
+        gap = abs(log(value / now.value))
+        try:
+            new = plane.move(now, now.k, value if gap <= step else now.value * exp(side * step))
+        except (ModeLost, ParameterError):
+            step = min(step, gap) / 3
+            if step < _SHORTEST:
+                return
+            continue
+        now, step = new, min(_ARC, 2 * step)
+        yield now
+
+
+def _turns(plane, way):
+    for a, b in pairwise(way):
+        if a.growth * b.growth <= 0:
+            yield a, b
+        elif may_turn(a, b):
+            middle = plane.move(a, a.k, (a.value * b.value) ** 0.5)
+            if middle.growth * a.growth <= 0:
+                yield a, middle
+                yield middle, b
+
+
+def _refined(plane, a, b):
+    """The `Zero` between two points of opposite growth: secants kept inside, at last with full accuracy."""
+    a, b = plane.adopt(a), plane.adopt(b)
+    for _ in range(_ITERATIONS):
+        share = float(np.clip(a.growth / (a.growth - b.growth), 0.01, 0.99)) if a.growth != b.growth else 0.5
+        near = min(a, b, key=lambda point: abs(point.growth))
+        newton = near.value - near.growth / near.by_value.real
+        inside = min(a.value, b.value) < newton < max(a.value, b.value)
+        new = plane.move(near, near.k, newton if inside else a.value * (b.value / a.value) ** share)
+        a, b = (new, b) if new.growth * b.growth <= 0 else (a, new)
+        if abs(new.growth) < 0.5 * new.mode.error or abs(newton - near.value) < 1e-15 * abs(near.value):
+            break
+    best = min(a, b, key=lambda point: abs(point.growth))
+    return zero_at(best, (best.mode.error + abs(best.growth)) / abs(best.by_value.real), 0.0, plane)
+

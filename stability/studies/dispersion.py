@@ -1,0 +1,256 @@
+"""Dispersion relations sigma(k): the surface mode followed from its long-wave limit, or the most unstable mode."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from ..checks import check_flag, check_options, check_wavenumbers
+from ..errors import ModeLost, naming
+from ..flows.base import check_flow
+from ..modes.branch import Branch, surface_branch
+from ..modes.eigenvalue import Eigenvalues
+from ..modes.listing import leading_modes, listed
+from ..modes.memory import branch_of
+from ..modes.mode import Mode, require
+from ..modes.solver import DEGREES, TOLERANCE, Solver, check_accuracy
+from ..modes.tracking import Collision, Encounter
+from ..numerics.threads import one_thread
+from ..output.panels import GROWTH_RATE, LINE, PHASE_SPEED, POINTS, WAVENUMBER, Curve, Panel, scale_of
+from ..output.record import Record
+from ..output.text import Row, measured
+from ..status import INTERRUPTED, is_resolved, outgrown
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ..flows import Flow
+    from ..modes.short_waves import Strip
+    from .outgrown import Outgrown
+
+MODES = ("surface", "leading", "most-unstable")
+
+_PORTION = 200  # wavenumbers followed before what is done is handed over
+
+
+@dataclass(frozen=True, repr=False)
+class DispersionRelation(Eigenvalues, Record):
+    """sigma(k) of one mode. Arrays have shape (points,), in the order of k.
+
+    `lost` maps wavenumbers at which the mode could not be followed to the reason (only with
+    strict=False); they are left out of the arrays, not of the rows. `collisions` lists the mergers met on the
+    way, `encounters` the near ones, `asked` all wavenumbers in the order asked for.
+
+    `flow` and `mode` are what was asked for, `modes` (points,) hold a `Mode` each, `method` and `settings` say how they
+    were computed. Units, L and V being the scales of the flow: `k` 1/L, `sigma`, `growth_rate` and `error` V/L, `slope`
+    and `phase_speed` V. Writing raises ParameterError where a file cannot be written, `["name"]` KeyError.
+
+    >>> from stability import dispersion, flows
+    >>> relation = dispersion(flows.Vortex(slope_deg=45.0), [1e-3, 2e-3])
+    >>> (relation.growth_rate / relation.k**2).round(5).tolist()  # thesis (4.25): -2/5
+    [-0.4, -0.4]
+    >>> len(relation), relation[0]["status"]
+    (2, 'resolved')
+    """
+
+    flow: Any
+    mode: str
+    modes: tuple[Mode, ...]
+    lost: dict[float, str] = field(hash=False)
+    collisions: tuple[Collision, ...]
+    asked: tuple[float, ...] = ()
+    method: str = "collocation"
+    settings: Mapping[str, Any] = field(default_factory=dict, compare=False)
+    encounters: tuple[Encounter, ...] = ()
+    dimension: ClassVar[str] = "k"
+
+    @property
+    def k(self) -> np.ndarray:
+        """Wavenumbers of the modes (points,), 1/L."""
+        return self._of_each("k")
+
+    @property
+    def slope(self) -> np.ndarray:
+        """d sigma / dk."""
+        return self._of_each("slope")
+
+    @property
+    def subtitle(self) -> str:
+        return f"; {self.mode} mode"
+
+    def panels(self) -> tuple[Panel, ...]:
+        """Growth rate and phase speed against k."""
+        modes = sorted(self.modes, key=lambda mode: mode.k)
+        k, error = (np.array([getattr(mode, name) for mode in modes], dtype=float) for name in ("k", "error"))
+        told = {row["k"]: row["status"] for row in self.rows()}
+        status = tuple(told.get(mode.k, mode.status) for mode in modes)
+        x = replace(WAVENUMBER, scale=scale_of(k))
+        kind = LINE if len(k) > 1 else POINTS
+        return tuple(Panel(x, y, (Curve(k, np.array([getattr(mode, y.name) for mode in modes]), kind=kind,
+                                        y_error=bars, status=status),), zero="y" if y is GROWTH_RATE else "")
+                     for y, bars in ((GROWTH_RATE, error), (PHASE_SPEED, error / k)))
+
+    def rows(self) -> list[Row]:
+        rows, faster = [self._row(k, mode) for k, mode in self._points()], self._outgrown
+        if faster:
+            rows = [{**row, "status": outgrown(row["status"])} if row["k"] >= faster.k else row for row in rows]
+        return rows
+
+    def columns(self) -> dict[str, np.ndarray]:
+        columns = super().columns()
+        missing = np.isnan(columns["growth_rate"].astype(float))
+        for name in ("sigma", "slope"):
+            values = [getattr(mode, name, np.nan) for _, mode in self._points()]
+            columns[name] = np.where(missing, complex(np.nan, np.nan), np.array(values, dtype=complex))
+        return columns
+
+    def notes(self) -> list[str]:
+        met = {str(event) for event in (*self.collisions, *self.encounters)}
+        notes = sorted(met | set(self.lost.values()) - {INTERRUPTED})
+        return notes + [naming(self.flow, str(doubt)) for doubt in self._doubts]
+
+    def about(self) -> dict[str, Any]:
+        return {"mode": self.mode}
+
+    @property
+    def _doubts(self) -> "list[Outgrown] | tuple[Strip, ...]":
+        """What the model says of itself: the mode is outgrown, or the flow is ill posed."""
+        if self.mode == MODES[0] or self.method != "collocation":
+            return [self._outgrown] if self._outgrown else []
+        from ..modes.short_waves import well_posedness
+
+        return well_posedness(self.flow).strips
+
+    @cached_property
+    def _outgrown(self) -> "Outgrown | None":
+        """Where an internal mode of an ill-posed flow grows faster."""
+        from .outgrown import outgrown
+
+        return outgrown(self) if self.method == "collocation" else None
+
+    def _points(self) -> "list[tuple[float, Mode | None]]":
+        """Every wavenumber asked for with its mode, None where that was lost."""
+        found = {mode.k: mode for mode in self.modes}
+        return [(k, found.get(k)) for k in self.asked or (*self.k.tolist(), *self.lost)]
+
+    def _row(self, k: float, mode: Any) -> Row:
+        """Without numbers where the mode is lost, or where the most unstable one is not resolved: that is no result."""
+        resolution = "degree" if self.method == "collocation" else "nodes"
+        refused = mode is None or self.mode == "most-unstable" and not is_resolved(mode.status)
+        names = "growth_rate", "phase_speed", "error", *measured(self.flow)
+        numbers = {name: None if refused else getattr(mode, name) for name in names}
+        return {"k": k, **numbers, resolution: getattr(mode, resolution, None),
+                "status": mode.status if mode else INTERRUPTED if self.lost.get(k) == INTERRUPTED else "lost"}
+
+
+def dispersion(flow: "Flow", k: "ArrayLike", mode: str | None = None, *, tolerance: float = TOLERANCE,
+               max_degree: int = DEGREES[-1], strict: bool = True) -> DispersionRelation:
+    """Return the `DispersionRelation` of a flow at wavenumbers k, a number or a sequence in any order.
+
+    mode="surface" follows the slow surface mode from its long-wave limit (the default where the flow has
+    one), "leading" follows the mode that is the least stable one at the wavenumber of the flow, 1 unless it says
+    otherwise (the default elsewhere), and "most-unstable" takes the least stable mode of the spectrum at each k. A
+    mode that is followed is the same one at a wavenumber whatever else is asked for. `tolerance` bounds the error
+    relative to |sigma|. Raises NotResolved or ModeLost; with strict=False the record says in `status` and `lost` what
+    failed.
+
+    Wavenumbers are in 1/L, growth rates in V/L, L and V being the scales of the flow; ParameterError is raised for what
+    is no flow, wavenumber or mode.
+
+    >>> from stability import flows
+    >>> relation = dispersion(flows.Poiseuille(Re=1e4), 1.0)
+    >>> print(f"{relation.modes[0].c:.10f}")  # Orszag (1971): 0.23752649 + 0.00373967i
+    0.2375264888+0.0037396706j
+    """
+    strict = check_flag("strict", strict)
+    parts = list(dispersion_parts(flow, k, mode, tolerance=tolerance, max_degree=max_degree))
+    relation = joined(parts, check_wavenumbers(k).tolist())
+    if strict:
+        for reason in relation.lost.values():
+            raise ModeLost(reason)
+        for point in relation.modes:
+            require(point)
+    return relation
+
+
+def dispersion_parts(flow: "Flow", k: "ArrayLike", mode: str | None = None, *, tolerance: float = TOLERANCE,
+                     max_degree: int = DEGREES[-1]) -> Iterator[DispersionRelation]:
+    """Yield the relation of `dispersion`, not strict, a portion of k at a time: `joined` puts them together."""
+    check_flow(flow)
+    wavenumbers = check_wavenumbers(k)
+    mode = default_mode(flow) if mode is None else check_options("mode", mode, MODES)
+    tolerance, max_degree = check_accuracy(tolerance, max_degree)
+    walk = {"surface": _surface, "leading": _leading, "most-unstable": _most_unstable}[mode]
+    portions, step = walk(Solver(flow, tolerance, max_degree), np.unique(wavenumbers)), one_thread(next)
+    while portion := step(portions, None):
+        found, lost, met = portion
+        collisions = tuple(event for event in met if isinstance(event, Collision))
+        encounters = tuple(event for event in met if isinstance(event, Encounter))
+        yield DispersionRelation(flow, mode, tuple(found.values()), lost, collisions, encounters=encounters,
+                                 settings={"tolerance": tolerance, "max_degree": max_degree})
+
+
+def joined(parts: list[DispersionRelation], asked: list[float]) -> DispersionRelation:
+    """Return the parts as one relation at the wavenumbers `asked`, in that order."""
+    found = {mode.k: mode for part in parts for mode in part.modes}
+    lost: dict[float, str] = {}
+    for part in parts:
+        lost |= {k: reason for k, reason in part.lost.items() if k not in found and k not in lost}
+    collisions = tuple(collision for part in parts for collision in part.collisions)
+    encounters = tuple(encounter for part in parts for encounter in part.encounters)
+    return replace(parts[0], modes=tuple(found[k] for k in asked if k in found), lost=lost, collisions=collisions,
+                   encounters=encounters, asked=tuple(asked))
+
+
+def default_mode(flow: "Flow") -> str:
+    """The mode that a dispersion relation follows unless told otherwise."""
+    return "surface" if flow.has_surface_mode() else "leading"
+
+
+# Each walk yields ({k: mode}, {k: why it is lost}, collisions and encounters) of a few wavenumbers at a time.
+
+
+def _surface(solver, wavenumbers):
+    """Follow the surface mode from its long-wave limit."""
+    yield from _followed(solver, surface_branch, wavenumbers)
+
+
+def _leading(solver, wavenumbers):
+    """Follow the mode that leads at the flow's own wavenumber."""
+    yield from _followed(solver, leading_branch, wavenumbers)
+
+
+def _followed(solver, start, wavenumbers):
+    told = set()
+    try:
+        with branch_of(solver, start) as branch:
+            for first in range(0, len(wavenumbers), _PORTION):
+                found, lost = branch.at(wavenumbers[first: first + _PORTION])
+                met = [event for event in (*branch.collisions, *branch.encounters) if event not in told]
+                told |= set(met)
+                yield found, lost, tuple(met)
+    except ModeLost as reason:
+        yield {}, dict.fromkeys(wavenumbers.tolist(), str(reason)), ()
+
+
+def leading_branch(solver):
+    """Return the branch of the mode that leads at `flow.wavenumber`, within its symmetry class on half the domain.
+
+    Of two that lead together, the one that travels downstream faster.
+    """
+    rivals = listed(solver, solver.flow.wavenumber, 1).modes
+    best = max(mode.growth_rate - mode.error for mode in rivals)
+    mode = max((mode for mode in rivals if mode.growth_rate + mode.error >= best), key=lambda mode: mode.phase_speed)
+    (half,) = (half for half in solver.halves if half.flow == mode.flow)
+    return Branch(half, mode)
+
+
+def _most_unstable(solver, wavenumbers):
+    for k in wavenumbers.tolist():
+        try:
+            (mode,) = leading_modes(solver, k, 1)
+            yield {k: mode}, {}, ()
+        except ModeLost as reason:
+            yield {}, {k: str(reason)}, ()

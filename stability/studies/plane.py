@@ -1,0 +1,136 @@
+"""One mode over the plane of wavenumber k and one parameter of a flow.
+
+Moving from point to point keeps to the mode: the rate is predicted from its gradient, and old and new eigenvectors must
+be biorthogonal partners, as in `modes.tracking`.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import isinf
+from typing import Any
+
+import numpy as np
+
+from ..errors import ModeLost, ParameterError
+from ..modes.solver import Solver
+from .sensitivity import Derivative
+
+_OVERLAP = 0.5  # largest deviation of the overlap of one step from 1
+_HALVINGS = 12
+_KEPT = 8  # solvers of neighbouring values
+
+
+@dataclass(frozen=True)
+class Point:
+    """A mode at wavenumber k and parameter `value`, in its `plane`."""
+
+    plane: Any
+    k: float
+    value: float
+    mode: Any
+
+    @property
+    def growth(self):
+        return self.mode.growth_rate
+
+    @cached_property
+    def by_value(self):
+        """d sigma / d value."""
+        return complex(self.plane.derivative(self.value)(self.mode))
+
+    @property
+    def trend(self):
+        """Derivative of the growth rate in the logarithm of the value."""
+        return self.value * self.by_value.real
+
+    @property
+    def by_k(self):
+        """Slope of the growth rate in log k."""
+        return self.k * self.mode.slope.real
+
+    @property
+    def gradient(self):
+        """Of the growth rate in (log k, value)."""
+        return np.array([self.by_k, self.by_value.real])
+
+
+class Plane:
+    """Modes of one symmetry class of `flow` at any wavenumber and any value of its parameter `vary`.
+
+    `half` tells which of `flow.halves()` is meant; `tolerance` is relative, error bars are computed with `bars`.
+    """
+
+    def __init__(self, flow, vary, tolerance, max_degree, half=0, bars=True):
+        if isinf(getattr(flow, vary)):
+            raise ParameterError(f"{flow.name}: {vary} = inf cannot be varied; start from a finite {vary}")
+        self.flow, self.vary, self.half = flow, vary, half
+        self.tolerance, self.max_degree, self._bars = tolerance, max_degree, bars
+        self.power = 2 if flow.has_surface_mode() else 0  # growth of long waves is of the order of k^power
+        self._solvers, self._derivatives = {}, {}
+
+    def rough(self, tolerance):
+        """The same plane, no more accurate than this."""
+        return Plane(self.flow, self.vary, max(self.tolerance, tolerance), self.max_degree, self.half, bars=False)
+
+    def flow_at(self, value):
+        """The whole flow at a value; raises ParameterError where there is none."""
+        return replace(self.flow, **{self.vary: value})
+
+    def solver(self, value):
+        """The solver at this value; the last few are kept."""
+        if value not in self._solvers:
+            flow = self.flow_at(value).halves()[self.half]
+            last = next(reversed(self._solvers.values()), None)
+            assembly = last.assembly.serving(flow) if last else None
+            if len(self._solvers) == _KEPT:
+                self._solvers.pop(next(iter(self._solvers)))
+            self._solvers[value] = Solver(flow, self.tolerance, self.max_degree, assembly, self._bars)
+        return self._solvers[value]
+
+    def derivative(self, value):
+        """The `Derivative` with respect to the parameter at this value; the last few are kept."""
+        if value not in self._derivatives:
+            if len(self._derivatives) == _KEPT:
+                self._derivatives.pop(next(iter(self._derivatives)))
+            self._derivatives[value] = Derivative(self.solver(value), self.vary)
+        return self._derivatives[value]
+
+    def point(self, k, value, mode):
+        return Point(self, k, value, mode)
+
+    def adopt(self, point):
+        """The point of another plane of this flow, with the accuracy of this one."""
+        mode = point.mode
+        solver = self.solver(point.value)
+        return self.point(point.k, point.value, solver.solve(point.k, mode.rate, (mode.degree, mode.x, mode.y)))
+
+    def move(self, start, k, value, halvings=_HALVINGS):
+        """The mode of `start` at another point; in several steps, halved so often, where one would not be safe."""
+        at, reached, step = start, 0.0, 1.0
+        for _ in range(4 * halvings):
+            ahead = min(1.0, reached + step)
+            point = self._step(at, start.k * (k / start.k) ** ahead if ahead < 1 else k,
+                               start.value + (value - start.value) * ahead if ahead < 1 else value)
+            if point is None:
+                step /= 2
+                if step < 0.5**halvings:
+                    break
+            elif ahead == 1:
+                return point
+            else:
+                at, reached, step = point, ahead, 2 * step
+        raise ModeLost(f"{start.mode.flow}: the mode is lost between k = {start.k:.6g} and {k:.6g}, "
+                       f"{self.vary} = {start.value:.6g} and {value:.6g}")
+
+    def _step(self, start, k, value):
+        """The mode of `start` at a nearby point, or None where it is not safely the same."""
+        solver, old = self.solver(value), start.mode
+        change = old.slope * (k - start.k)
+        if value != start.value:
+            change += start.by_value * (value - start.value)
+        degree = old.degree if old.degree in solver.degrees else solver.degrees[-1]
+        try:
+            mode = solver.solve(k, (old.sigma + change) / solver.width(k), (old.degree, old.x, old.y), degree)
+        except ModeLost:
+            return None
+        return self.point(k, value, mode) if abs(solver.overlap(old, mode) - 1) < _OVERLAP else None

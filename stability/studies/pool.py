@@ -1,0 +1,77 @@
+"""Worker processes of our own: they leave Ctrl-C to the parent, and end with it however it ends."""
+
+import os
+import signal
+import sys
+import threading
+from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
+from contextlib import contextmanager, suppress
+from multiprocessing import get_context
+
+from threadpoolctl import threadpool_limits
+
+from ..errors import ParameterError, WorkersLost
+
+MOST_WORKERS = 1000
+GUARD = 'a script needs `if __name__ == "__main__":` around what it does, and cannot come from standard input'
+
+
+def cores():
+    """How many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@contextmanager
+def processes(workers):
+    """Yield a pool of `workers` fresh processes; whatever they still do at the end of the block is dropped.
+
+    Each holds one end of a pipe whose other end is ours alone. When that closes, because the block ends or because
+    this process was killed, they end at once. Raises WorkersLost at the end of a block in which none of them began.
+    """
+    if getattr(sys.modules["__main__"], "__file__", None) == "<stdin>":
+        raise ParameterError(f"workers: each process runs the script anew: {GUARD}")
+    context = get_context("spawn")  # a fork would copy the other end of the pipe, and the threads of BLAS
+    theirs, ours = context.Pipe(duplex=False)
+    pool, first = ProcessPoolExecutor(workers, context, _begin, (theirs,)), []
+    try:
+        with _deaf(), suppress(BrokenExecutor):
+            for _ in range(workers):
+                first.append(pool.submit(_nothing))  # starts a process
+        yield pool
+    finally:
+        ours.close()
+        pool.shutdown()
+        theirs.close()
+    if all(task.exception() for task in first):
+        raise WorkersLost(f"no worker process began: {GUARD}")
+
+
+@contextmanager
+def _deaf():
+    """Block Ctrl-C here and, inherited, for good in the processes started meanwhile: they must not print tracebacks."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _begin(lifeline):
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with, args=(lifeline,), daemon=True).start()
+    threadpool_limits(1, user_api="blas")
+
+
+def _end_with(lifeline):
+    """Wait until the other end of the pipe is gone; nothing is ever sent."""
+    try:
+        lifeline.recv_bytes()
+    except (EOFError, OSError):
+        os._exit(0)
+
+
+def _nothing():
+    pass

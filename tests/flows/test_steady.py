@@ -1,0 +1,114 @@
+"""Steady granular flows of the thesis's chapter 2: closed forms, quadrature and an initial-value problem."""
+
+from dataclasses import replace
+
+import mpmath as mp
+import numpy as np
+import pytest
+import sympy as sp
+
+from stability import flows, spectrum
+from stability.errors import ParameterError
+from stability.flows import Annulus, Chute, Dune, Linear, Pile, PlaneShear, Plate, PowerLaw, Regularised, Saturating
+from stability.flows.rheology import well_posed_band
+from stability.studies.base import base_flow
+
+LAW = Saturating(0.4, 0.64, 0.3)
+LAWS = (LAW, Linear(0.4, 1.5), Regularised(0.4, 0.64, 0.3))
+
+
+def plate_velocity(lam, theta, Z):
+    """U of (2.35), dU/dZ = (1/lam) (Z - Z1)/(Z2 - Z) sqrt(1 - Z), closed, y = sqrt(1 - Z), a^2 = theta/lam."""
+    y, r, a = np.sqrt(1 - Z), np.sqrt(theta), np.sqrt(theta / lam)
+    log = np.log((r - a) / (r + a)) - np.log((y - a) / (y + a))
+    return 2 / lam * (-(r**3 - y**3) / 3 + (r**2 - a**2) * (r - y) + a / 2 * (r**2 - a**2) * log)
+
+
+@pytest.mark.parametrize("theta", [1.1, 1.3, 1.5])
+def test_the_plate_has_the_profile_of_the_thesis(theta):
+    found = base_flow(Plate(shields=theta, law=LAW))
+    exact = LAW.I0 * plate_velocity(1.6, theta, found.z)
+    np.testing.assert_allclose(found.U, exact, atol=1e-13 * exact.max())
+    assert np.abs(found.U - LAW.I0 * plate_velocity(1.616, theta, found.z)).max() > 1e-3 * exact.max()
+
+
+def test_the_bed_of_dunes_is_the_dragged_plate():
+    """(4.52) and (2.35) from mu(I) (1 - z) = mu1 shields by algebra, and the same numbers of both scenes."""
+    z, theta, mu1, b, lam, I0, number = sp.symbols("z theta mu1 b lambda I0 I", positive=True)
+    linear, = sp.solve(sp.Eq(mu1 * (1 + b * number) * (1 - z), mu1 * theta), number)
+    assert sp.simplify(linear * sp.sqrt(1 - z) - (theta - 1 + z) / (b * sp.sqrt(1 - z))) == 0
+    friction = mu1 + (lam * mu1 - mu1) * number / (I0 + number)
+    saturating, = sp.solve(sp.Eq(friction * (1 - z), mu1 * theta), number)
+    thesis = (z - (1 - theta)) / (lam * ((1 - theta / lam) - z)) * sp.sqrt(1 - z)
+    assert sp.simplify(saturating * sp.sqrt(1 - z) / I0 - thesis) == 0
+    for law in LAWS:
+        bed, plate = (base_flow(cls(shields=1.4, law=law)) for cls in (Dune, Plate))
+        np.testing.assert_allclose(bed.U, plate.U, atol=1e-14)
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
+def test_velocities_are_integrals_of_the_shear_rate(law):
+    """Plug and surface velocity, flux: adaptive quadrature of I sqrt(p), from the law's own inverse."""
+    chute, pile = Chute(plug=0.75, law=law), Pile(slope_deg=30, mu_wall=0.4, law=law)
+    pressure = 0.75 / law.rest
+
+    def rate(x):
+        return float(law.beyond(max(x / pressure - law.start, 0))) * pressure**0.5
+
+    inner = 0.75 if law.yields else 0.0
+    breaks = sorted([inner, *(float(law.mu(one)) * pressure for one in law.breaks), 1.0])
+    assert chute.plug_velocity == pytest.approx(float(mp.quad(rate, breaks)), rel=1e-12)
+    assert chute.flux == pytest.approx(2 * float(mp.quad(lambda x: x * rate(x), breaks)), rel=1e-12)
+    breaks = sorted({0.0, *((pile.mu - float(law.mu(one))) / 0.4 for one in law.breaks), pile.depth})
+    speed = mp.quad(lambda y: float(law.beyond(max(pile.mu - 0.4 * y - law.start, 0))) * y**0.5, breaks)
+    assert base_flow(pile).U[-1] == pytest.approx(float(speed), rel=1e-9)
+
+
+def test_the_annulus_solves_its_initial_value_problem():
+    from scipy.integrate import solve_ivp
+
+    flow = Annulus(thickness=0.2, gamma=8.0, law=LAW)
+    ry, mu1, mu2, I0 = 1.2, 0.4, 0.64, 0.3
+
+    def slopes(R, state):
+        P, spin = state
+        number = I0 * (ry**2 - R**2 * P) / (mu2 / mu1 * R**2 * P - ry**2)
+        return [R * spin**2, -8.0 * number * P**0.5 / R]
+
+    found = solve_ivp(slopes, (ry, 1.0), [1.0, 0.0], method="DOP853", rtol=1e-13, atol=1e-15)
+    assert flow.rotation == pytest.approx(found.y[1, -1], rel=1e-11)
+    assert base_flow(flow).pressure[0] == pytest.approx(found.y[0, -1], rel=1e-12)
+    assert replace(flow, gamma=8.08).rotation != pytest.approx(found.y[1, -1], rel=1e-3)
+
+
+def test_plane_shear_is_ill_posed_where_its_inertial_number_is():
+    """U = z, uniform I: grows without bound outside the band of Barker et al., decays inside."""
+    low, high = well_posed_band(Saturating())
+    for number, grows in ((0.5 * low, True), (1.1 * low, False), (0.5 * high, False)):
+        shear = PlaneShear(inertial=number, inertia=0.1)
+        leading = spectrum(shear, 30.0, 1, strict=False).modes[0].growth_rate
+        assert (leading > 0) == grows
+
+
+def test_waves_under_a_plate_are_resolved_under_every_law():
+    for law in LAWS:
+        modes = spectrum(Plate(law=law, grains=5.0), 1.0, 3).modes
+        assert all(mode.status == "resolved" for mode in modes)
+    one, other = (spectrum(Plate(law=law, grains=3.0), 1.0, 1).modes[0] for law in
+                  (Linear(0.4, 1.5), PowerLaw(0.4, 1.5, 1.0)))
+    assert abs(one.sigma - other.sigma) <= one.error + other.error
+
+
+@pytest.mark.parametrize(("make", "message"), [
+    (lambda: Chute(plug=0.5, law=LAW), r"plug must lie in \(0.625, 1\)"),
+    (lambda: Pile(slope_deg=33, law=LAW), "slope_deg must lie in"),
+    (lambda: Plate(shields=1.7, law=LAW), "shields must lie in"),
+    (lambda: Annulus(thickness=0.5, law=LAW), "no steady flow found"),
+    (lambda: Annulus(law=Regularised()), "no yield radius"),
+    (lambda: spectrum(Chute(), 1.0), "ask for stability base chute"),
+    (lambda: spectrum(Pile(), 1.0), "ask for stability base pile"),
+    (lambda: spectrum(flows.Annulus(), 1.0), "ask for stability base annulus"),
+])
+def test_refusals(make, message):
+    with pytest.raises(ParameterError, match=message):
+        make()
