@@ -13,9 +13,9 @@ from style import BLUE, GREY, RED, main, plt
 from stability import spectrum
 from stability.flows import Dune, Regularised, RollWave, Saturating
 from stability.modes.dense import finite_rates
+from stability.modes.short_waves import well_posedness
 from stability.modes.solver import Solver
 from stability.status import is_resolved
-from stability.studies.wellposed import well_posedness
 
 LAWS = {"saturating": Saturating, "regularised": Regularised}
 DEGREES = (48, 96)

@@ -10,7 +10,7 @@ matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402
 
 from stability.numerics.threads import one_thread  # noqa: E402
-from stability.output.plots import BLUE, GREY, RED, STYLE  # noqa: E402
+from stability.output.style import BLUE, GREY, RED, STYLE  # noqa: E402
 
 GREEN, ORANGE = "#2e8b57", "#d98200"
 __all__ = ["BLUE", "GREEN", "GREY", "ORANGE", "RED", "main", "plt"]

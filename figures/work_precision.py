@@ -22,7 +22,7 @@ import competitors  # noqa: E402
 import references  # noqa: E402
 
 from stability import flows
-from stability.bvp.problem import problem as bvp
+from stability.bvp import problem as bvp
 from stability.flows.wavy_wall import response  # noqa: E402
 from stability.numerics.threads import one_thread  # noqa: E402
 from stability.studies.compare import Reference, compare, target, timed  # noqa: E402

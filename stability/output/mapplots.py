@@ -9,8 +9,8 @@ import numpy as np
 
 from ..status import is_outgrown, is_settled, is_stable
 from .panels import Grid
-from .plots import GREY, RED
 from .spacing import is_logarithmic, spans_decades
+from .style import GREY, RED
 
 HATCHES = {"not resolved": "////", "stable": "..", "outgrown by an internal mode": "xxxx"}
 _SIGNED, _RISING = "RdBu_r", "viridis"

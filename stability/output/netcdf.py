@@ -3,20 +3,22 @@
 import io
 from collections.abc import Iterator
 from dataclasses import fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.io import netcdf_file
 
 from .columns import SCALES, column, known
-from .record import Record
+
+if TYPE_CHECKING:
+    from .record import Record
 
 CONVENTION = ("normal mode exp(i k x + sigma t): positive growth_rate = Re sigma is unstable; "
               "c = i sigma / k, positive phase_speed = Re c is downstream")
 _RENAMED = {"mode": "mode_followed"}  # scipy's file object has an attribute `mode` of its own
 
 
-def encode(record: Record) -> bytes:
+def encode(record: "Record") -> bytes:
     """Return the content of the file."""
     buffer = io.BytesIO()
     with netcdf_file(buffer, "w") as file:
@@ -28,7 +30,7 @@ def encode(record: Record) -> bytes:
         return buffer.getvalue()
 
 
-def attributes_of(record: Record) -> dict[str, Any]:
+def attributes_of(record: "Record") -> dict[str, Any]:
     """Return what belongs to the whole file: title, parameters, header, scales and convention."""
     header = record.header()
     return {"title": f"{type(record).__name__} of {record.flow.title}", **header.pop("parameters"),
@@ -36,7 +38,7 @@ def attributes_of(record: Record) -> dict[str, Any]:
             "scales": f"{record.flow.scales}; {SCALES}", "convention": CONVENTION}
 
 
-def variables_of(record: Record) -> Iterator[tuple[str, tuple[str, ...], np.ndarray, dict[str, str]]]:
+def variables_of(record: "Record") -> Iterator[tuple[str, tuple[str, ...], np.ndarray, dict[str, str]]]:
     """Yield name, dimensions, values and attributes of every variable; complex columns are two of them."""
     for name, values in record.columns().items():
         for part, numbers in _real(name, values):
@@ -57,7 +59,7 @@ def _real(name: str, values: np.ndarray) -> list[tuple[str, np.ndarray]]:
     return [(f"{name}_real", values.real), (f"{name}_imag", values.imag)]
 
 
-def _about(record: Record, name: str, part: str) -> dict[str, str]:
+def _about(record: "Record", name: str, part: str) -> dict[str, str]:
     """The attributes of a variable: parameters explain themselves, other columns are explained in `columns`."""
     parameters = {item.name: item.metadata["meaning"] for item in fields(record.flow)}
     if name in parameters:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import ParameterError
+from .csv_text import read_csv
 from .panels import LINE, POINTS, Curve
 
 _ERRORS = "{}_error", "{}_err", "error_{}", "{}_sd"  # names of a column with the error of another one
@@ -57,8 +58,6 @@ def _numbers(column):
 
 def read_overlay(text: str, name: str = "--overlay") -> Overlay:
     """Return the overlay of FILE or FILE:LABEL; raises ParameterError where the file cannot be read."""
-    from .reading import read_csv
-
     path, label = _parts(text)
     header, columns = read_csv(path, name)
     arrays = {key: _column(values) for key, values in columns.items()}

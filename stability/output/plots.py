@@ -5,47 +5,19 @@ differ, in grey print too, and so that a style sheet may say otherwise. Text sta
 """
 
 from collections.abc import Sequence
-from itertools import cycle as forever
-from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from cycler import cycler
 
 from ..status import is_outgrown, is_settled
 from .look import Look
+from .mapplots import draw_grid, legend_of
 from .panels import BARS, DOTS, LEVEL, LINE, MARKED, OTHERS, POINTS, THIN, Grid, Panel, labelled, named
+from .style import COLOURS, FONTS, GREY, MARKERS, RED, STYLE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-BLUE, RED, GREEN, ORANGE, PURPLE, TEAL, BLACK = COLOURS = ("#0b4f8a", "#c0392b", "#2e8b57", "#d98200", "#7d3c98",
-                                                           "#17a2b8", "#222222")
-GREY = "#7f7f7f"
-LINES: tuple[Any, ...] = ("-", "--", "-.", ":", (0, (6, 1, 1, 1, 1, 1)), (0, (10, 2)))  # told apart in grey print
-MARKERS = "o", "s", "^", "D", "v"
-CURVES = len(COLOURS) * len(LINES)  # that differ in colour or line style
-
-
-def _cycle():
-    """All pairs of colours and line styles: their numbers have no common divisor."""
-    return cycler(**{name: list(islice(forever(values), CURVES)) for name, values in
-                     (("color", COLOURS), ("linestyle", LINES))})
-
-
-FONTS: dict[Any, Any] = {"pdf.fonttype": 42, "ps.fonttype": 42, "svg.fonttype": "none"}  # text, not its outlines
-STYLE: dict[Any, Any] = {
-    "figure.constrained_layout.use": True,
-    "font.size": 9,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.prop_cycle": _cycle(),
-    "legend.frameon": False,
-    "lines.linewidth": 1.4,
-    "savefig.dpi": 200,
-    "svg.hashsalt": "stability",
-    **FONTS,
-}
 _SIZE = 6.4, 2.8  # inches, unless a Look says otherwise
 _NARROW, _SMALL = 5.0, 7  # inches of width below which the font has this size
 _ASIDE = 1.2  # ratio of width and height from which panels stand side by side
@@ -110,7 +82,6 @@ def axes_or_new(axes: "Axes | None") -> "Axes":
 def draw_one(axis: "Axes", panel: Any, line_options: Any = None) -> None:
     """Draw a Panel or a Grid into axes, without its legend."""
     if isinstance(panel, Grid):
-        from .mapplots import draw_grid
 
         draw_grid(axis, panel, line_options or {})
     else:
@@ -193,7 +164,6 @@ def _legends(figure, axes, panels):
     found = [axis.get_legend_handles_labels() for axis in axes]
     grids = [panel for panel in panels if isinstance(panel, Grid)]
     if grids:
-        from .mapplots import legend_of
 
         extra = legend_of(grids[0])
         handles, labels = [*found[0][0], *extra[0]], [*found[0][1], *extra[1]]

@@ -1,20 +1,18 @@
 """Results read back from the files that were written of them: CSV, JSON or netCDF, known by their content."""
 
-import csv
 import io
 import json
 from itertools import product
 from math import isnan
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..checks import check_file_name
 from ..errors import ParameterError
+from .csv_text import no_nan, parse_csv, read_bytes, text_of
 from .stored import Stored
 
-_MARK = "\ufeff"  # of the byte order, which some programs write first
 _NETCDF = b"CDF"
 _PARTS = "_real", "_imag"
 _LIST = "maximum"  # dimension of a list in each row
@@ -38,88 +36,21 @@ def load(path: Any) -> Stored:
     Units are those of the columns, `output.columns` explains them.
     """
     name = check_file_name(path, "load: path")
-    content = _bytes(name, "load")
+    content = read_bytes(name, "load")
     if content.startswith(_NETCDF):
         return _netcdf(content)
-    text = _text(content, name, "load")
+    text = text_of(content, name, "load")
     if text.lstrip().startswith("{"):
         return _json(text, name)
-    header, columns = _csv(text, name, "load")
+    header, columns = parse_csv(text, name, "load")
     if "flow" not in header or "method" not in header:
         raise ParameterError(f"load: {name!r} is no result: it has no lines `# flow: ...` and `# method: ...` above "
                              "its columns")
     return Stored(header, _rows(columns))
 
 
-def read_csv(path: Any, name: str) -> tuple[dict[str, Any], dict[str, list[Any]]]:
-    """Return header {key: value} of the lines `# key: value`, and columns {name: values}, None where a cell is empty.
-
-    A column is of numbers, or, where one cell is no number, of texts.
-    """
-    path = check_file_name(path, f"{name}: path")
-    return _csv(_text(_bytes(path, name), path, name), path, name)
-
-
-def _bytes(path, name):
-    try:
-        return Path(path).read_bytes()
-    except OSError as reason:
-        raise ParameterError(f"{name}: cannot read {path!r}: {reason.strerror}") from None
-
-
-def _text(content, path, name):
-    try:
-        return content.decode("utf-8").removeprefix(_MARK)
-    except UnicodeDecodeError:
-        raise ParameterError(f"{name}: {path!r} is neither text nor netCDF 3") from None
-
-
 def _rows(columns):
     return tuple(dict(zip(columns, values, strict=True)) for values in zip(*columns.values(), strict=True))
-
-
-# -- CSV -------------------------------------------------------------------------------------------------
-
-
-def _csv(text, path, name):
-    lines = [line for line in io.StringIO(text, newline="") if line.strip()]
-    comments = [line[1:].strip().partition(": ") for line in lines if line.startswith("#")]
-    header = {key.strip(): _one(value) for key, colon, value in comments if colon}
-    cells = list(csv.reader((line for line in lines if not line.startswith("#")), skipinitialspace=True))
-    if len(cells) < 2:
-        raise ParameterError(f"{name}: {path!r} has no rows below the names of its columns")
-    names, *rows = cells
-    for number, row in enumerate(rows, 1):
-        if len(row) != len(names):
-            raise ParameterError(f"{name}: {path!r}: row {number} has {len(row)} cells, and there are {len(names)} "
-                                 "columns")
-    if len(set(names)) < len(names):
-        raise ParameterError(f"{name}: {path!r} has two columns of the same name")
-    return header, {key.strip(): _typed(values) for key, values in zip(names, zip(*rows, strict=True), strict=True)}
-
-
-def _one(cell):
-    return _typed([cell])[0]
-
-
-def _typed(cells):
-    """The cells of a column as integers, floats, lists or texts, whichever all of them are; None where one is empty."""
-    for kind in (int, float, _list):
-        try:
-            return [None if cell.strip() == "" else _no_nan(kind(cell)) for cell in cells]
-        except ValueError:
-            continue
-    return list(cells)
-
-
-def _no_nan(value):
-    return None if isinstance(value, float) and isnan(value) else value
-
-
-def _list(cell):
-    if not cell.startswith("["):
-        raise ValueError(cell)
-    return json.loads(cell)
 
 
 # -- JSON ------------------------------------------------------------------------------------------------
@@ -173,7 +104,7 @@ def _columns(variables, main):
         if _LIST in dimensions:
             lists[name] = values.tolist()
         elif dimensions == main:
-            columns[name] = [_no_nan(value) for value in values.ravel().tolist()]
+            columns[name] = [no_nan(value) for value in values.ravel().tolist()]
         elif len(main) > 1:
             grid = product(*(places[axis] for axis in main))
             columns[name] = [point[main.index(name)] for point in grid]

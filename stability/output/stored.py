@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import ParameterError
+from .mapplots import states
 from .panels import (
     BARS,
     ELASTICITY,
@@ -160,8 +161,6 @@ class Stored(Record):
         return tuple(curves)
 
     def _grid(self, axes, quantity):
-        from .mapplots import states
-
         places = [np.array(list(dict.fromkeys(row[name] for row in self.table)), dtype=float) for name in axes]
         if len(axes) > 2:
             raise ParameterError(f"only maps over one or two axes are drawn (this one has {', '.join(axes)})")

@@ -17,7 +17,8 @@ from ..flows.base import check_flow, numeric, span_of
 from ..modes.crests import default_mode
 from ..modes.eigenfunction import Eigenfunction
 from ..output.panels import GROWTH_RATE, PHASE_SPEED, WAVENUMBER
-from ..output.plots import BLUE, GREY, RED, STYLE, draw
+from ..output.plots import draw
+from ..output.style import BLUE, GREY, RED, STYLE
 from ..output.symbols import symbol_of
 from .dispersion import DispersionRelation, dispersion
 from .kmax import k_max

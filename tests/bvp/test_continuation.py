@@ -8,12 +8,12 @@ import pytest
 import references
 
 from stability import dispersion, flows, k_max
+from stability.bvp import continuation
 from stability.bvp.continuation import (
     bounded_maximum,
     continue_in,
     continue_in_k,
 )
-from stability.bvp.problem import continuation
 from stability.bvp.thesis import RegularisedVortex, thesis_setting
 from stability.cli import main
 from stability.equations.layer import Layer

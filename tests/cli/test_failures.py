@@ -14,8 +14,9 @@ from scipy.integrate import solve_bvp
 from scipy.linalg import eig
 
 from stability import dispersion, flows, k_max, spectrum
+from stability.bvp import continuation
 from stability.bvp.continuation import bounded_maximum, continue_in_k
-from stability.bvp.problem import Problem, continuation
+from stability.bvp.problem import Problem
 from stability.bvp.thesis import thesis_setting
 from stability.equations.layer import Layer, Profile
 from stability.errors import NotSmooth

@@ -11,8 +11,8 @@ from scipy.io import netcdf_file
 from stability import flows
 from stability.cli import main
 from stability.cli.verbs import VERBS
+from stability.output import netcdf
 from stability.output.columns import BY_VERB, COLUMNS, DEGREES, PARAMETERS, column, known
-from stability.output.text import netcdf
 from stability.studies.base import base_flow
 from stability.studies.compare import Comparison, Measurement, Reference
 

@@ -16,7 +16,8 @@ from stability.cli import main
 from stability.output.look import Look, parse_size, read_style
 from stability.output.overlay import read_overlay
 from stability.output.panels import scale_of
-from stability.output.plots import COLOURS, STYLE, draw
+from stability.output.plots import draw
+from stability.output.style import COLOURS, STYLE
 from stability.output.symbols import assigned, symbol, symbol_of, title_of, value_text
 
 DEPTHS = (2.0, 5.0, np.inf)

@@ -12,7 +12,7 @@ from test_record import RECORDS
 
 from stability import ParameterError, dispersion, flows, load
 from stability.cli import main
-from stability.output.reading import read_csv
+from stability.output.csv_text import read_csv
 from stability.studies.map import parameter_map
 
 MAPS = {"map": lambda: parameter_map(flows.Dune(), {"depth": [2.0, np.inf], "Re": [1.0, 10.0]}),

@@ -12,7 +12,7 @@ import asymptotics
 import stability
 from stability import flows
 from stability.modes import energy, short_waves
-from stability.output.text import columns, record, stored
+from stability.output import columns, record, stored
 from stability.studies import base, compare, explore, neutral, sensitivity
 from stability.studies import kmax as optimum
 from stability.studies import map as maps
