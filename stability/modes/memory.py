@@ -8,31 +8,66 @@ alone: another thread follows its own.
 
 from collections import OrderedDict
 from contextlib import contextmanager
+from dataclasses import fields
+from math import inf, log
 from threading import Lock
 
 KEPT = 8  # branches, some megabytes each
+_NEAR = 0.5  # largest distance of flows, in the logarithms of their parameters, whose branches resemble one another
 
 _branches: OrderedDict = OrderedDict()
 _lock = Lock()
 
 
 @contextmanager
-def branch_of(solver, make):
-    """Lend the branch that `make(solver)` returns, one that was followed before if there is one."""
-    key = make, type(solver.flow), solver.flow, solver.tolerance, solver.degrees[-1], solver.bars
+def branch_of(solver, make, wavenumbers):
+    """Lend the branch that `make(solver, known)` returns, one that was followed before if there is one.
+
+    `known` are modes of a flow that is nearly the same, {k: mode}, up to the `wavenumbers` that are asked for, or None.
+    """
+    key = solver.flow, type(solver.flow), make, solver.tolerance, solver.degrees[-1], solver.bars
     try:
         with _lock:
             branch = _branches.pop(key, None)
+            near = None if branch else _nearest(*key)
+            known = near and near.known
     except TypeError:  # a flow that cannot be hashed
-        yield make(solver)
+        yield make(solver, None)
         return
-    branch = branch or make(solver)
+    branch = branch or make(solver, known and _up_to(max(wavenumbers), known))
     yield branch
     if branch.uneventful and branch.solver.assembly.small:
         with _lock:
             _branches[key] = branch
             while len(_branches) > KEPT:
                 _branches.popitem(last=False)
+
+
+def _nearest(flow, *others):
+    """The branch kept, of the same kind, whose flow is nearest to this one; None where none is near."""
+    near, least = None, _NEAR
+    for (other, *key), branch in _branches.items():
+        if key == list(others) and (way := _distance(flow, other)) < least:
+            near, least = branch, way
+    return near
+
+
+def _up_to(k, known):
+    """What is known up to the first wavenumber beyond k."""
+    beyond = min((other for other in known if other >= k), default=inf)
+    return {other: mode for other, mode in known.items() if other <= beyond}
+
+
+def _distance(one, other):
+    """Between two flows that differ in positive numbers alone: the sum of the moduli of log ratios."""
+    total = 0.0
+    for item in fields(one):
+        a, b = getattr(one, item.name), getattr(other, item.name)
+        if a is not b and a != b:
+            if not (isinstance(a, float) and isinstance(b, float) and 0 < a < inf and 0 < b < inf):
+                return inf
+            total += abs(log(a / b))
+    return total
 
 
 def forget():

@@ -109,7 +109,7 @@ class Walk:
     def beyond(self, k):
         """Step on until wavenumber k lies behind, by the same steps whichever it is."""
         side = copysign(1.0, log(k / self.segments[0][0].k))
-        if self.solver.flow.functions:
+        if self.solver.flow.functions and not self.solver.foresight:
             self.solver.prepare(np.array(_ladder(self.now.k, k)))
         while side * log(k / self.now.k) > 0:
             if self._attempts and self._attempts % _STRETCH == 0:

@@ -10,6 +10,8 @@ import numpy as np
 from scipy.linalg import lapack
 from scipy.sparse import csr_array
 
+from .stack import with_data
+
 _UNEVEN = 1e6  # largest entry of a sum above which its rows and columns are scaled
 
 _BAND = {"f": (lapack.dgbtrf, lapack.dgbtrs), "c": (lapack.zgbtrf, lapack.zgbtrs)}
@@ -37,11 +39,12 @@ class Places:
         place = place[self._order]
         first = np.flatnonzero(np.diff(place, prepend=-1))
         self._place, self.row, self.column = place[first], row[self._order][first], column[self._order][first]
-        self._part, self._first, self._parts = part[self._order], np.append(first, len(place)), parts
+        self._matrix = csr_array((np.zeros(len(place)), part[self._order], np.append(first, len(place))),
+                                 (len(first), parts))
 
     def matrix(self, value):
         """The sparse matrix (places, parts) of entries with these values (entries,)."""
-        return csr_array((value[self._order], self._part, self._first), (len(self._place), self._parts))
+        return with_data(self._matrix, value[self._order])
 
     def blocks(self, values):
         """Return band, right and bottom with these values (..., places) in place."""

@@ -25,7 +25,7 @@ _TINY = np.finfo(float).tiny
 _FACTORISATIONS = 12
 _ROUNDS = 3  # of factorisations at many points
 _CORRECTIONS = 12
-_VECTOR = 1e-9  # error of a vector, and so of the slope, that is accepted
+VECTOR = 1e-9  # error of a vector, and so of the slope, that is accepted
 _OFFSET = 1e-3  # of a factorisation for corrections from its rate: it must not be singular
 
 
@@ -52,10 +52,11 @@ class Eigen:
         return [Eigen(*values) for values in zip(*(getattr(self, field.name) for field in fields(self)), strict=True)]
 
 
-def refine(pencil, weights, rate, x=None, y=None, bars=True):
+def refine(pencil, weights, rate, x=None, y=None, bars=True, accuracy=VECTOR):
     """Iterate from a `rate` (and vectors (size,), if known) until the quotient has settled; raise ModeLost if not.
 
-    `weights` are those of one point, (parts,); so are all arrays in the result, without an axis of points.
+    `weights` are those of one point, (parts,); so are all arrays in the result, without an axis of points. Vectors are
+    wrong by `accuracy` at most, the rate by its square: less is right for a rough look.
     """
     x, y = (_start(pencil.size) if vector is None else vector for vector in (x, y))
     y = y.conj()  # y^H from here on
@@ -63,7 +64,7 @@ def refine(pencil, weights, rate, x=None, y=None, bars=True):
         if pencil.real and not np.imag(rate):
             rate, x, y = np.real(rate), x.real, y.real
         factors = _factors(pencil, weights.value, rate)
-        x, y, settled = _iterate(pencil, weights.value, factors, x, y)
+        x, y, settled = _iterate(pencil, weights.value, factors, x, y, accuracy)
         if settled:
             found = _quotient(pencil, weights, x, y, settled, bars)
             return _twice(pencil, weights, found, bars) if factors.uneven else found
@@ -73,12 +74,15 @@ def refine(pencil, weights, rate, x=None, y=None, bars=True):
     raise ModeLost(f"inverse iteration near rate {complex(rate):.6g} did not settle")
 
 
-def refine_many(pencil, weights, rate, x, y, bars=True):
+def refine_many(pencil, weights, rate, x, y, bars=True, accuracy=VECTOR):
     """Refine good guesses of rates (points,) and vectors (points, size) at many points, whose `weights` are given.
 
-    Without `bars` the rounding is left at 0: a rough look does not need it.
+    Without `bars` the rounding is left at 0: a rough look does not need it. Without a rate the quotient of the vectors
+    is the guess.
     """
     x, y = x.T, y.conj().T
+    if rate is None:
+        rate = _rate(pencil, weights.value * pencil.stack.brackets(y, pencil.stack.times(x)))
     if pencil.real and not np.any(np.imag(rate)):
         rate, x, y = rate.real, x.real, y.real
     x, y = np.ascontiguousarray(x), np.ascontiguousarray(y)
@@ -86,7 +90,8 @@ def refine_many(pencil, weights, rate, x, y, bars=True):
     for _ in range(_ROUNDS):
         value = weights.value[:, left]
         factors = pencil.factors(value, rate[left])
-        x[:, left], y[:, left], settled[left] = _iterate(pencil, value, factors, x[:, left], y[:, left])
+        x[:, left], y[:, left], settled[left] = _iterate(
+            pencil, value, factors, x[:, left], y[:, left], accuracy)
         settled[left] &= ~factors.uneven
         rate = _rate(pencil, weights.value * pencil.stack.brackets(y, pencil.stack.times(x)))
         left = left[~settled[left] & ~factors.uneven]
@@ -95,11 +100,11 @@ def refine_many(pencil, weights, rate, x, y, bars=True):
     return _quotient(pencil, weights, x, y, settled, bars)
 
 
-def _iterate(pencil, weights, factors, x, y):
+def _iterate(pencil, weights, factors, x, y, accuracy):
     """Two inverse iterations from either side; return both vectors, and whether their quotient is settled."""
     x, x_error = _iterated(lambda v: factors.solve(pencil.b(weights, v)), x)
     y, y_error = _iterated(lambda v: factors.solve_left(pencil.b_left(weights, v)), y)
-    return x, y, _settled(x_error, y_error)
+    return x, y, _settled(x_error, y_error, accuracy)
 
 
 def _iterated(step, vector):
@@ -176,9 +181,10 @@ def _converging(step, vectors, before):
     return change, change**2 / np.maximum(np.maximum(change, before), _TINY) + _EPS
 
 
-def _settled(x_error, y_error):
-    """Whether the quotient of two vectors with these errors is right to rounding, and its slope nearly so."""
-    return (x_error * y_error < 0.1 * _EPS) & (np.maximum(x_error, y_error) < _VECTOR)
+def _settled(x_error, y_error, accuracy=VECTOR):
+    """Whether the quotient of two vectors with these errors is right to rounding (or to accuracy^2, where that is
+    more), and its slope nearly so."""
+    return (x_error * y_error < max(0.1 * _EPS, accuracy**2)) & (np.maximum(x_error, y_error) < accuracy)
 
 
 def _size(vectors):
