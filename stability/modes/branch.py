@@ -32,8 +32,8 @@ _ASTRAY = 0.5  # largest deviation of the overlap with the next node from 1
 class Branch:
     """The mode `start` followed to any wavenumber; `solver` refines what is asked for, `rough` walks.
 
-    `lost` maps a side, 1 for rising k and -1 for falling k, to the reason why the walk ended there. `seen` are modes that
-    were looked at before the start was found.
+    `lost` maps a side, 1 for rising k and -1 for falling k, to the reason why the walk ended there. `seen` are modes
+    that were looked at before the start was found.
     """
 
     def __init__(self, solver, start, rough=None, seen=()):

@@ -192,7 +192,8 @@ class Solver:
     def solve_many(self, wavenumbers, rates, vectors, degree):
         """Return the modes at many wavenumbers at once, None where more work is needed.
 
-        `rates` (points,) and right and left `vectors` (points, size) of this degree are good guesses; rates may be None.
+        `rates` (points,) and right and left `vectors` (points, size) of this degree are good guesses. Without rates
+        the quotients of the vectors are.
         """
         modes = []
         count = max(1, min(_TOGETHER[0], _TOGETHER[1] // degree))
@@ -217,8 +218,8 @@ class Solver:
     def overlap(self, old, mode):
         """Product of the two biorthogonal overlaps of a new mode with an old one: near 1 for one mode, 0 for two."""
         x, y = transfer(self, (old.degree, old.x, old.y), mode.degree)
-        weights, pencil = self.weights(mode.k).value, self.pencil(mode.degree)
-        return np.vdot(y, pencil.b(weights, mode.x)) * np.vdot(mode.y, pencil.b(weights, x))
+        b, _ = self.pencil(mode.degree).b_products(self.weights(mode.k).value)
+        return np.vdot(y, b(mode.x)) * np.vdot(mode.y, b(x))
 
     def next_degree(self, mode):
         """The degree to try first near this mode: one rung lower where it is over-resolved."""

@@ -14,6 +14,7 @@ from .stack import with_data
 
 _UNEVEN = 1e6  # largest entry of a sum above which its rows and columns are scaled
 
+_FULL = {"f": (lapack.dgetrf, lapack.dgetri), "c": (lapack.zgetrf, lapack.zgetri)}
 _BAND = {"f": (lapack.dgbtrf, lapack.dgbtrs), "c": (lapack.zgbtrf, lapack.zgbtrs)}
 
 
@@ -91,6 +92,17 @@ class Bordered:
         return scales
 
 
+def _inverse(matrix):
+    """Of one small matrix, without what numpy's costs beside its work."""
+    factor, invert = _FULL[matrix.dtype.kind]
+    lu, pivots, info = factor(matrix)
+    if not info:
+        inverse, info = invert(lu, pivots)
+    if info:
+        raise np.linalg.LinAlgError("singular border")
+    return inverse
+
+
 class Factors:
     """LU factors of the sum of the parts of a `Bordered` times weights (parts,); `uneven` where it had to be scaled.
 
@@ -109,7 +121,7 @@ class Factors:
         self._bottom = bottom[:, : self._interior]
         self._coupled = self._inner(right)
         self._schur = bottom[:, self._interior:] - self._bottom @ self._coupled
-        self._border = np.linalg.inv(self._schur)
+        self._border = _inverse(self._schur)
 
     def phase(self):
         """Return the determinant over its modulus (scales are positive: they leave it alone)."""

@@ -59,12 +59,12 @@ def refine(pencil, weights, rate, x=None, y=None, bars=True, accuracy=VECTOR):
     wrong by `accuracy` at most, the rate by its square: less is right for a rough look.
     """
     x, y = (_start(pencil.size) if vector is None else vector for vector in (x, y))
-    y = y.conj()  # y^H from here on
+    y, b = y.conj(), pencil.b_products(weights.value)  # y^H from here on
     for _ in range(_FACTORISATIONS):
         if pencil.real and not np.imag(rate):
             rate, x, y = np.real(rate), x.real, y.real
         factors = _factors(pencil, weights.value, rate)
-        x, y, settled = _iterate(pencil, weights.value, factors, x, y, accuracy)
+        x, y, settled = _iterate(b, factors, x, y, accuracy)
         if settled:
             found = _quotient(pencil, weights, x, y, settled, bars)
             return _twice(pencil, weights, found, bars) if factors.uneven else found
@@ -91,7 +91,7 @@ def refine_many(pencil, weights, rate, x, y, bars=True, accuracy=VECTOR):
         value = weights.value[:, left]
         factors = pencil.factors(value, rate[left])
         x[:, left], y[:, left], settled[left] = _iterate(
-            pencil, value, factors, x[:, left], y[:, left], accuracy)
+            pencil.b_products(value), factors, x[:, left], y[:, left], accuracy)
         settled[left] &= ~factors.uneven
         rate = _rate(pencil, weights.value * pencil.stack.brackets(y, pencil.stack.times(x)))
         left = left[~settled[left] & ~factors.uneven]
@@ -100,24 +100,28 @@ def refine_many(pencil, weights, rate, x, y, bars=True, accuracy=VECTOR):
     return _quotient(pencil, weights, x, y, settled, bars)
 
 
-def _iterate(pencil, weights, factors, x, y, accuracy):
-    """Two inverse iterations from either side; return both vectors, and whether their quotient is settled."""
-    x, x_error = _iterated(lambda v: factors.solve(pencil.b(weights, v)), x)
-    y, y_error = _iterated(lambda v: factors.solve_left(pencil.b_left(weights, v)), y)
+def _iterate(b, factors, x, y, accuracy):
+    """Two inverse iterations from either side; return both vectors, and whether their quotient is settled.
+
+    `b` are the products with B from the right and from the left.
+    """
+    x, x_error = _iterated(b[0], factors.solve, x)
+    y, y_error = _iterated(b[1], factors.solve_left, y)
     return x, y, _settled(x_error, y_error, accuracy)
 
 
-def _iterated(step, vector):
+def _iterated(b, solve, vector):
     """Two inverse iterations with one factorisation; return the vector and an estimate of its error.
 
     Vectors are scaled by one component. The second step shrinks what the first one changed by the
     ratio of the distances to the wanted and the next eigenvalue, and so will the next.
     """
-    pivot = np.argmax(np.abs(vector), axis=0)
+    pivot = np.abs(vector).argmax(axis=0)
     if vector.ndim > 1:
         pivot = pivot, np.arange(vector.shape[1])
-    start, first = (v / v[pivot] for v in (vector, step(vector)))
-    second = step(first)
+    first = solve(b(vector))
+    start, first = vector / vector[pivot], first / first[pivot]
+    second = solve(b(first))
     second = second / second[pivot]
     change, error = _converging(second - first, second, _size(first - start) / _size(second))
     return second, error
@@ -142,7 +146,7 @@ def _corrected(pencil, weights, found, bars):
     if pencil.real and not np.imag(rate):
         rate, x, y = np.real(rate), x.real, y.real
     factors = _factors(pencil, value, rate * (1 + _OFFSET))
-    bx, by = pencil.b(value, x), pencil.b_left(value, y)
+    bx, by = (product(vector) for product, vector in zip(pencil.b_products(value), (x, y), strict=True))
     along_x, along_y = x / (by @ x), y / (by @ x)
     x_change = y_change = 0.0
     for _ in range(_CORRECTIONS):

@@ -3,7 +3,6 @@
 Vectors are the columns of arrays (size, points): one product serves all points, whatever their scalars.
 """
 
-from copy import copy
 from functools import cached_property
 
 import numpy as np
@@ -98,6 +97,11 @@ class Stack:
         """Sum over the parts, weights times y^T part: (columns, points)."""
         return self._transposed @ (spread * y[self._lines.row])
 
+    def summed(self, weights):
+        """Products of the sum of the parts, times weights (parts, ...), with vectors from the right and from the left."""
+        spread = self.spread(weights)
+        return lambda x: self.total(spread, self.times(x)), lambda y: self.total_left(spread, y)
+
     def brackets(self, y, products):
         """y^T part x for every part: (parts, points)."""
         return self._lines.to_parts(y[self._lines.row] * products)
@@ -109,8 +113,8 @@ class Stack:
 
 def with_data(matrix, data):
     """A sparse matrix with entries in the same places; what holds these was checked when the other was made."""
-    other = copy(matrix)
-    other.data = data
+    other = object.__new__(type(matrix))
+    other.__dict__.update(matrix.__dict__, data=data)
     return other
 
 
