@@ -221,7 +221,8 @@ def _laws(solver, highest):
     tried = highest / _FACTOR ** np.arange(_TRIES)
     for first in range(0, _TRIES, _CONFIRMED):
         few = tried[first: first + _CONFIRMED]
-        solver.prepare(few)
+        if not solver.foresight:
+            solver.prepare(few)
         limits, ahead = np.split(solver.flow.long_wave(np.concatenate((few, 1.01 * few))), 2)
         yield from zip(few.tolist(), limits, np.log(ahead / limits) / log(1.01), strict=True)
 

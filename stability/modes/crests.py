@@ -221,7 +221,7 @@ def may_grow(left, right):
 
 
 def _decays(left, right):
-    """Whether growth between two nodes is so far below 0 that no slope at either end, taken upwards, makes up for it."""
+    """Whether growth between two nodes is so far below 0 that slopes at both ends, taken upwards, do not reach it."""
     h = log(right.k / left.k)
     rises = (h * mode.k * (abs(mode.slope.real) + _AUDIBLE * mode.slope_error) for mode in (left, right))
     return max(left.growth_rate + left.error, right.growth_rate + right.error) + sum(rises) < 0

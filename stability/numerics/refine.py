@@ -85,7 +85,7 @@ def refine_many(pencil, weights, rate, x, y, bars=True, accuracy=VECTOR):
         rate = _rate(pencil, weights.value * pencil.stack.brackets(y, pencil.stack.times(x)))
     if pencil.real and not np.any(np.imag(rate)):
         rate, x, y = rate.real, x.real, y.real
-    x, y = np.ascontiguousarray(x), np.ascontiguousarray(y)
+    x, y = (np.ascontiguousarray(vectors, np.result_type(vectors, rate)) for vectors in (x, y))
     settled, left = np.zeros(len(rate), bool), np.arange(len(rate))
     for _ in range(_ROUNDS):
         value = weights.value[:, left]

@@ -98,7 +98,7 @@ class Stack:
         return self._transposed @ (spread * y[self._lines.row])
 
     def summed(self, weights):
-        """Products of the sum of the parts, times weights (parts, ...), with vectors from the right and from the left."""
+        """Products of the sum of the parts, times weights (parts, ...), with vectors: functions of x, and of y."""
         spread = self.spread(weights)
         return lambda x: self.total(spread, self.times(x)), lambda y: self.total_left(spread, y)
 

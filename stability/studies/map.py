@@ -20,6 +20,7 @@ from ..checks import check_file_name, check_integer, check_options, check_wavenu
 from ..errors import ParameterError, StabilityError, WorkersLost
 from ..flows.base import check_flow, check_parameter
 from ..flows.sources import faults, origin
+from ..modes.memory import apart
 from ..modes.solver import DEGREES, TOLERANCE, check_accuracy
 from ..output.panels import GROWTH_AT_K_MAX, GROWTH_RATE, K_MAX, PHASE_SPEED, WAVENUMBER, Axis, Grid
 from ..output.record import Record
@@ -450,7 +451,7 @@ def compute(piece, attempt=0):
 
     `attempt` does nothing: it tells an engine that remembers calls by their arguments that this is another one.
     """
-    with faults():
+    with faults(), apart():
         return [list(row) for row in _ROWS[piece.quantity](piece)]
 
 
