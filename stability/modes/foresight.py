@@ -5,9 +5,14 @@ other all at once, which costs a third of solving for each in turn; its walk the
 judged as if it had found them itself: what is foreseen saves work and decides nothing.
 """
 
+from itertools import pairwise
+
 import numpy as np
 
+from .solver import transfer
+
 _CLOSE = 0.05  # largest relative distance of a rate from the one expected, if the walk knows what to expect
+_SIMILAR = 1.5  # largest ratio of degrees that are made the same
 
 
 class Foresight:
@@ -24,10 +29,20 @@ class Foresight:
 
 
 def _refined(solver, known):
-    for degree in sorted({mode.degree for mode in known}):
-        group = [mode for mode in known if mode.degree == degree]
-        if group[0].x.shape != (solver.pencil(degree).size,):
+    for degree, group in _groups(known):
+        if group[0].x.shape != (solver.pencil(group[0].degree).size,):
             return
-        vectors = [np.array([getattr(mode, name) for mode in group]) for name in ("x", "y")]
+        vectors = [np.array(vectors) for vectors in zip(*(
+            transfer(solver, (mode.degree, mode.x, mode.y), degree) for mode in group), strict=True)]
         modes = solver.solve_many([mode.k for mode in group], None, vectors, degree)
         yield from (mode for mode in modes if mode)
+
+
+def _groups(modes):
+    """Modes that are refined together, each with the degree: one alone at its degree joins one alone at the next."""
+    groups = {degree: [mode for mode in modes if mode.degree == degree] for degree in {mode.degree for mode in modes}}
+    degrees = sorted(groups)
+    for lower, higher in pairwise(degrees):
+        if len(groups[lower]) == len(groups[higher]) == 1 and higher < _SIMILAR * lower:
+            groups[higher] += groups.pop(lower)
+    return sorted(groups.items())
