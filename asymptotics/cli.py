@@ -44,8 +44,8 @@ def _run(argv) -> int:
     except BadUsage as reason:
         return _fail(reason, 2)
     except (ValueError, LookupError) as reason:
+        from .comparison import TooFewPoints
         from .flows import NoSuchFlow
-        from .limits import TooFewPoints
         from .parameters import BadParameter
 
         if isinstance(reason, (BadParameter, NoSuchFlow, TooFewPoints)):
