@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-PACKAGE = Path(__file__).parents[1] / "stability"
+ROOT = Path(__file__).parents[1]
+PACKAGE = ROOT / "stability"
 FOLDERS = "", "numerics", "equations", "flows", "output", "modes", "bvp", "studies", "cli", "docs"
 LAZY = {"", "__main__", "flows"}  # packages that import what they offer when it is asked for; the way in
 DOORS = {  # from method to what it opens: a Mode is what these start from, and offers them
@@ -118,3 +119,31 @@ def test_a_circle_is_seen(tmp_path):
     (tmp_path / "modes" / "a.py").write_text("def late():\n    from . import b")
     (tmp_path / "modes" / "b.py").write_text("from .a import late")
     assert circles(tmp_path) == {"modes.a", "modes.b"}
+
+
+LINES, BODY = 350, 40  # of a file, of a function with its docstring
+
+
+def too_long(source):
+    """What exceeds the limits in one file, {name: lines}; "" is the file."""
+    functions = [node for node in ast.walk(ast.parse(source))
+                 if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)]
+    lengths = [(node.name, node.end_lineno - node.lineno + 1) for node in functions]
+    found = {name: length for name, length in lengths if length > BODY}
+    whole = len(source.splitlines())
+    return found | ({"": whole} if whole > LINES else {})
+
+
+@pytest.mark.parametrize("package", ["stability", "asymptotics"])
+def test_no_file_and_no_function_is_long(package):
+    long = {str(file.relative_to(ROOT)): too_long(file.read_text()) for file in (ROOT / package).rglob("*.py")}
+    assert not {name: found for name, found in long.items() if found}
+
+
+@pytest.mark.parametrize(("source", "names"), [
+    ("x = 1\n" * LINES, set()), ("x = 1\n" * (LINES + 1), {""}),
+    ("def short():\n" + "    x = 1\n" * (BODY - 1), set()),
+    ("def long():\n" + "    x = 1\n" * BODY + "def long():\n    pass\n", {"long"}),
+    ("class A:\n    async def long(self):\n" + "        x = 1\n" * BODY, {"long"})])
+def test_what_is_long_is_seen(source, names):
+    assert set(too_long(source)) == names

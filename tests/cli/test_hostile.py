@@ -16,7 +16,7 @@ from stability.cli.specs import parse_spec
 from stability.flows import FLOWS
 from stability.modes.solver import Solver
 from stability.numerics.angles import cot_deg
-from stability.studies.neutral import critical
+from stability.studies.critical import critical
 
 SEED, POINTS, TRUTH = 9, 30, 4
 STEADY = {"chute", "pile", "annulus"}  # flows without waves

@@ -13,7 +13,7 @@ from scipy.io import netcdf_file
 from stability import dispersion, flows, k_max, spectrum
 from stability.cli import main
 from stability.errors import ParameterError
-from stability.studies.neutral import critical
+from stability.studies.critical import critical
 
 OPEN = {"bottom": "decay", "top": "decay"}
 BRUTE_FORCE = bool(os.environ.get("STABILITY_BRUTE_FORCE"))

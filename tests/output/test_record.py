@@ -18,9 +18,10 @@ from stability import ParameterError, __version__, dispersion, flows, k_max, spe
 from stability.bvp.continuation import Continuation
 from stability.cli import main
 from stability.modes.short_waves import well_posedness
+from stability.studies.critical import NeutralPoint, NeutralSweep, critical, critical_sweep
 from stability.studies.kmax import Optima, k_max_sweep
 from stability.studies.map import parameter_map
-from stability.studies.neutral import NeutralPoint, NeutralSweep, critical, critical_sweep, neutral_curve
+from stability.studies.neutral import neutral_curve
 from stability.studies.sensitivity import sensitivities
 from stability.studies.spectrum import Spectra
 from stability.studies.wellposed import growth_with_degree
@@ -325,7 +326,7 @@ def test_columns_of_the_table_are_attributes(record, name):
 
 def test_the_package_offers_what_it_lists():
     """Some of it is imported only when asked for, so that the rest starts sooner."""
-    late = ["stability.studies.map", "stability.studies.neutral", "stability.studies.sensitivity", "multiprocessing"]
+    late = ["stability.studies.map", "stability.studies.critical", "stability.studies.sensitivity", "multiprocessing"]
     code = (f"import sys, stability; print([name for name in {late} if name in sys.modules]); "
             "print(all(callable(getattr(stability, name)) for name in stability.__all__ if name != 'flows'))")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

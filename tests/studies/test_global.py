@@ -21,7 +21,8 @@ from stability.flows import FLOWS
 from stability.modes import dense, listing
 from stability.modes.branch import surface_branch
 from stability.modes.solver import Solver
-from stability.studies.neutral import critical, neutral_curve
+from stability.studies.critical import critical
+from stability.studies.neutral import neutral_curve
 from stability.studies.plane import Plane
 
 FILM, TWO = flows.Film, flows.TwoLayerCouette

@@ -10,7 +10,8 @@ from stability import NotResolved, ParameterError, flows, spectrum
 from stability.cli import main
 from stability.modes.energy import condition_numbers, energy
 from stability.modes.solver import Solver
-from stability.studies.neutral import critical, critical_sweep, neutral_curve
+from stability.studies.critical import critical, critical_sweep
+from stability.studies.neutral import neutral_curve
 from stability.studies.sensitivity import parameter_slope
 
 FLOWS = [

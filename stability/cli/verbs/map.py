@@ -69,7 +69,7 @@ def _run(arguments):
 
 
 def _request(arguments):
-    from ...studies.map import Request, usual_quantity
+    from ...studies.request import Request, usual_quantity
 
     flow, options = flow_of(arguments), options_of(arguments)
     if not arguments.over:

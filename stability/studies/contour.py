@@ -1,0 +1,84 @@
+"""The line of zero growth in the plane of k and one parameter, followed by arclength past its turning points."""
+
+from math import exp
+
+import numpy as np
+
+from ..errors import ModeLost, ParameterError
+
+_ROUGH = 1e-5  # tolerance of the arclength continuation
+_ITERATIONS = 20
+_LARGEST = 0.4  # step of Newton in log k, and relative in the parameter
+_ARC = 0.02, 0.25  # first and largest step along the curve, in log k and log value
+_TURN = 0.15  # angle between neighbouring tangents at which the step is kept
+_POINTS = 400
+_MARGIN = 1.15  # factor in k beyond the range asked for within which the curve may turn back
+_DRAWN = 0.03  # distance from a curve, in log k and log value, within which a point lies on it
+
+
+def passes(lines, k, value):
+    return bool(len(lines)) and float(np.nanmin(np.abs(np.log(lines / (k, value))).max(axis=1))) < _DRAWN
+
+
+def trace(land, zero, low, high):
+    """Points (points + 1, 2) along the neutral curve through a zero, from end to end; a row of nan ends it."""
+    (half,) = (index for index, flow in enumerate(land.planes[0].flow_at(zero.value).halves())
+               if flow == zero.mode.flow)
+    plane = land.planes[half].rough(_ROUGH)
+    start = plane.adopt(land.planes[half].point(zero.k, zero.value, zero.mode))
+    back, ahead = (_walk(plane, start, side, low, high, land.span) for side in (-1, 1))
+    return np.array([*((point.k, point.value) for point in (*reversed(back[1:]), *ahead)), (np.nan, np.nan)])
+
+
+def _walk(plane, start, side, low, high, span):
+    """Follow the curve by arclength until it leaves low <= k <= high or the span, or as far as the mode can be
+    followed."""
+    points, step = [_project(plane, start)], _ARC[0]
+    tangent = _tangent(points[0])
+    tangent = side * tangent * np.sign(tangent[0])
+    while len(points) < _POINTS:
+        now = points[-1]
+        ahead = now.k * exp(step * tangent[0]), now.value * exp(step * tangent[1])
+        try:
+            new = _project(plane, plane.move(now, *ahead))
+        except (ModeLost, ParameterError):
+            new = None
+        turn = np.inf
+        if new is not None:
+            direction = _tangent(new)
+            direction = direction if direction @ tangent > 0 else -direction
+            turn = np.arccos(min(1.0, direction @ tangent))
+        if turn > 2 * _TURN:
+            step /= 2
+            if step < 1e-5:
+                break
+            continue
+        points.append(new)
+        tangent, step = direction, min(_ARC[1], step * min(2.0, _TURN / max(turn, 1e-9)))
+        leaving = new.k * _MARGIN < low and tangent[0] < 0 or new.k > high * _MARGIN and tangent[0] > 0
+        if leaving or not span[0] <= new.value <= span[1]:
+            break
+    return points
+
+
+def _scaled_gradient(point):
+    """Gradient of the growth rate in (log k, log value)."""
+    return point.gradient * (1.0, point.value)
+
+
+def _tangent(point):
+    across = _scaled_gradient(point)
+    return np.array([-across[1], across[0]]) / np.hypot(*across)
+
+
+def _project(plane, point):
+    """The point of the curve next to this one, by Newton steps along the gradient."""
+    for _ in range(_ITERATIONS):
+        gradient = _scaled_gradient(point)
+        step = -point.growth * gradient / (gradient @ gradient)
+        if np.hypot(*step) > _LARGEST:
+            raise ModeLost("the neutral curve is not near")
+        if np.hypot(*step) < 1e-3 * _ARC[0]:
+            return point
+        point = plane.move(point, point.k * exp(step[0]), point.value * exp(step[1]))
+    raise ModeLost("the neutral curve is not near")
