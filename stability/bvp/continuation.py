@@ -16,7 +16,7 @@ from ..modes.crests import SEARCH
 from ..modes.eigenvalue import Eigenvalue, Eigenvalues
 from ..modes.solver import TOLERANCE
 from ..numerics.threads import one_thread
-from ..status import RESOLVED
+from ..status import RESOLVED, Status, unresolved
 from .problem import Problem, solve
 
 _RESIDUALS = (1e-4, 1e-6, 1e-7, 1e-8)  # tolerances of solve_bvp tried in turn
@@ -49,7 +49,7 @@ class Point(Eigenvalue):
     error: float
     nodes: int
     unknowns: int
-    status: str
+    status: Status
 
 
 @dataclass(frozen=True)
@@ -243,7 +243,7 @@ class _Walk:
                 break
             coarse = fine
         status = RESOLVED if error <= self.tolerance * abs(fine.rate) else \
-            f"error {problem.width * error:.1e} exceeds tolerance with {len(fine.mesh)} nodes"
+            unresolved(f"error {problem.width * error:.1e} exceeds tolerance with {len(fine.mesh)} nodes")
         sigma = problem.width * fine.rate
         return Point(problem.flow, problem.k, complex(sigma), float(problem.width * error), len(fine.mesh),
                      fine.spline.c.shape[-1] * len(fine.mesh), status)

@@ -14,7 +14,7 @@ from ..flows.catalogue import nearest
 from ..modes.solver import DEGREES, TOLERANCE, check_accuracy
 from ..output.columns import explained
 from ..output.text import check_writable, render, terminal_width, whole_file, write
-from ..status import INTERRUPTED, is_settled
+from ..status import is_interrupted, is_settled
 from .plotting import look_of, plot_options
 from .progress import Bar
 from .specs import parse_spec
@@ -189,8 +189,8 @@ def report(arguments, compute):
     form = check_files(arguments)
     result = compute()
     rows, header = result.rows(), result.header()
-    missing = [row for row in rows if row["status"] == INTERRUPTED]
-    failed = [row for row in rows if not is_settled(row["status"]) and row["status"] != INTERRUPTED]
+    missing = [row for row in rows if is_interrupted(row["status"])]
+    failed = [row for row in rows if not is_settled(row["status"]) and not is_interrupted(row["status"])]
     if not arguments.quiet:
         for note in _radians(arguments):
             say(f"stability: {note}")

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import NotResolved
-from ..status import is_resolved
+from ..status import Status, is_resolved
 from .eigenvalue import Eigenvalue
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ class Mode(Eigenvalue):
     error: float
     slope: complex
     degree: int
-    status: str
+    status: Status
     truncation: float
     rounding: float
     rate: complex = field(repr=False)

@@ -10,7 +10,7 @@ from ..equations.system import System
 from ..equations.table import Table
 from ..flows.base import check_flow
 from ..numerics.refine import refine, refine_many
-from ..status import RESOLVED
+from ..status import RESOLVED, unresolved
 from .cutoff import neglected
 from .mode import Mode
 from .response import data_error, spread_of
@@ -226,7 +226,7 @@ class Solver:
         error = truncation + rounding + lacking
         status = RESOLVED
         if not error <= self.tolerance * abs(sigma):  # nor where it is not a number
-            status = f"error {error:.1e} exceeds tolerance at degree {degree}"
+            status = unresolved(f"error {error:.1e} exceeds tolerance at degree {degree}")
         slope = width * eigen.slope + (1 + self.flow.order) * sigma / k
         return Mode(self.flow, float(k), complex(sigma), float(error), complex(slope), degree, status,
                     float(truncation), float(rounding), eigen.rate, eigen.slope, eigen.x, eigen.y,

@@ -19,7 +19,7 @@ from ..output.panels import OTHERS, POINTS, WAVENUMBER, Axis, Curve, Panel, scal
 from ..output.record import Record
 from ..output.symbols import axis_label, symbol_of, value_text
 from ..output.text import Row, measured
-from ..status import inside, is_resolved
+from ..status import Status, inside, is_resolved, unresolved
 from .ridges import Landscape
 from .thresholds import critical_zeros
 
@@ -76,7 +76,7 @@ class NeutralPoint(ZeroGrowth):
     phase_speed: float | None
     error: float | None
     k_error: float | None
-    status: str
+    status: Status
     settings: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
     others: "tuple[NeutralPoint, ...]" = field(default=(), repr=False)
     remark: str | None = field(default=None, repr=False)
@@ -234,4 +234,4 @@ def point_of(land, zero, settings):
 
 
 def no_point(flow, vary, k, why):
-    return NeutralPoint(flow, vary, k, None, None, None, None, why)
+    return NeutralPoint(flow, vary, k, None, None, None, None, unresolved(why))

@@ -17,7 +17,7 @@ from ..modes.solver import DEGREES, TOLERANCE, check_accuracy
 from ..numerics.threads import one_thread
 from ..output.panels import DOTS, PHASE_SPEED, POINTS, WAVENUMBER, Curve, Panel, scale_of
 from ..output.text import Row
-from ..status import is_resolved
+from ..status import is_resolved, unresolved
 from .contour import passes, trace
 from .critical import NeutralPoint, ZeroGrowth, landscape_of, no_point, point_of, settings_of, value_axis
 from .crossings import zeros_at
@@ -114,7 +114,7 @@ def _at_wavenumber(land, k, settings, drawn, low, high):
     if trouble:
         value, reason = next(iter(trouble.items()))
         doubt = f"others may be missing: at {land.vary} = {value:.4g}, {reason}"
-        points = [replace(point, status=doubt) if is_resolved(point.status) else point for point in points]
+        points = [replace(point, status=unresolved(doubt)) if is_resolved(point.status) else point for point in points]
     if not points:
         kind = "a mode grows" if grows == {True} else "all modes decay"
         why = f"the neutral curve does not reach k = {k:g}: {kind} at every {land.vary} from {land.span[0]:g} to " \

@@ -7,7 +7,7 @@ modes then grow ever faster with k, while the slow surface mode need not notice:
 from dataclasses import dataclass
 
 from ..modes.dense import finite_rates
-from ..modes.short_waves import well_posedness
+from ..modes.short_waves import ill_posed_somewhere, ill_posed_strips
 from ..modes.solver import DEGREES, Solver
 from ..numerics.threads import one_thread
 
@@ -43,8 +43,7 @@ def outgrown(relation):
     wavenumbers of the relation are bisected.
     """
     modes = sorted(relation.modes, key=lambda mode: mode.k)
-    strips = well_posedness(relation.flow).strips if modes and relation.mode == "surface" else ()
-    if not strips:
+    if not (modes and relation.mode == "surface" and ill_posed_somewhere(relation.flow)):
         return None
     solver = Solver(relation.flow)
     rates = {}
@@ -57,7 +56,8 @@ def outgrown(relation):
     if above == len(modes):
         return None
     degrees, (coarse, fine) = zip(*rates[above].items(), strict=True)
-    return Outgrown(modes[above].k, fine if abs(fine - coarse) < _SETTLED * abs(fine) else None, degrees, strips)
+    rate = fine if abs(fine - coarse) < _SETTLED * abs(fine) else None
+    return Outgrown(modes[above].k, rate, degrees, ill_posed_strips(relation.flow))
 
 
 def faster(solver, mode):

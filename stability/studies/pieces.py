@@ -8,7 +8,6 @@ from ..flows.sources import faults
 from .critical import critical_sweep
 from .dispersion import dispersion
 from .kmax import k_max_sweep
-from .outgrown import outgrown
 
 
 def compute(piece, attempt=0):
@@ -40,7 +39,8 @@ def _optimum_row(optimum):
 def _growth_rate_rows(piece):
     def sweep(flows):
         for flow in flows:
-            yield dispersion(flow, piece.k, strict=False, tolerance=piece.tolerance, max_degree=piece.max_degree)
+            yield dispersion(flow, piece.k, strict=False, rivals=True, tolerance=piece.tolerance,
+                             max_degree=piece.max_degree)
 
     for found in _each(sweep, piece.flows):
         if isinstance(found, str):
@@ -50,14 +50,12 @@ def _growth_rate_rows(piece):
 
 
 def _relation_rows(piece, relation):
-    modes = {mode.k: mode for mode in relation.modes}
-    faster = outgrown(relation)
+    modes = {mode.k: (mode, state) for mode, state in zip(relation.modes, relation.status, strict=True)}
     for k in piece.k:
         if k not in modes:
-            yield _nothing(piece, f"lost: {relation.lost[k]}")
+            yield _nothing(piece, status.Status(status.Kind.LOST, relation.lost[k]))
             continue
-        mode = modes[k]
-        state = status.outgrown(mode.status) if faster and k >= faster.k else mode.status
+        mode, state = modes[k]
         yield mode.growth_rate, mode.phase_speed, mode.error, *_data_error(relation.flow, mode), mode.degree, state
 
 
@@ -78,7 +76,7 @@ def _data_error(flow, result):
 
 
 def _nothing(piece, why):
-    return *[None] * (piece.width - 1), why
+    return *[None] * (piece.width - 1), status.read(why)
 
 
 def _each(sweep, flows):
