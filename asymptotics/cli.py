@@ -44,8 +44,8 @@ def _run(argv) -> int:
     except BadUsage as reason:
         return _fail(reason, 2)
     except (ValueError, LookupError) as reason:
+        from .comparison import TooFewPoints
         from .flows import NoSuchFlow
-        from .limits import TooFewPoints
         from .parameters import BadParameter
 
         if isinstance(reason, (BadParameter, NoSuchFlow, TooFewPoints)):
@@ -192,10 +192,10 @@ def _check(arguments) -> int:
     if header.get("flow", arguments.flow) != arguments.flow:
         raise BadUsage(f"{source(arguments.file)} holds the flow {header['flow']}, asked for {arguments.flow}; "
                        f"run: asymptotics check {header['flow']}")
-    usual = getattr(flows.load(arguments.flow), "LAW", None)
-    if usual and header.get("law", usual) != usual:
-        raise BadUsage(f"{source(arguments.file)} holds friction law {header['law']}; the expansion of "
-                       f"{arguments.flow} is that of law {usual}")
+    laws = getattr(flows.load(arguments.flow), "LAWS", ())
+    if laws and header.get("law", laws[0]) not in laws:
+        raise BadUsage(f"{source(arguments.file)} holds friction law {header['law']}; the expansions of "
+                       f"{arguments.flow} are those of law {' and '.join(laws)}")
     names = {parameter.name for parameter in flows.load(arguments.flow).PARAMETERS}
     values = {name: value for name, value in header.items() if name in names} | _given(arguments)
     expansion = flows.expand(arguments.flow, arguments.regime, arguments.order, **values)

@@ -17,6 +17,7 @@ above it, have the bounded solutions; w = 0 there. A creeping bed begins on its 
 one height after the other. On the bed q = s, t = -tau R s, w = S s.
 """
 
+from fractions import Fraction
 from functools import cache
 from operator import mul
 
@@ -24,52 +25,84 @@ import mpmath as mp
 from references import Fixed, _det, _grains, _response, _root
 
 _RATIO = mp.mpf("0.4")  # step over the radius of convergence, as far as that is estimated
+_SPARE = 160  # bits: inertial numbers of creeping grains fall to 1e-20, and slopes of friction rise as far
 
 
 class Series:
-    """Truncated power series; arithmetic with numbers and with each other."""
+    """Truncated power series, arithmetic with numbers and with each other: integers in units of 2**-bits.
 
-    def __init__(self, c):
-        self.c = list(c)
+    Far faster than floating point; `_SPARE` bits more than the working precision make up for small coefficients.
+    """
+
+    def __init__(self, units, bits):
+        self.units, self.bits = list(units), bits
+
+    @classmethod
+    def of(cls, numbers):
+        bits = mp.mp.prec + _SPARE
+        return cls((_units(one, bits) for one in numbers), bits)
+
+    @property
+    def c(self):
+        """The coefficients as numbers of the working precision."""
+        return [mp.ldexp(one, -self.bits) for one in self.units]
 
     def _other(self, other):
-        return other.c if isinstance(other, Series) else [other] + [mp.mpf(0)] * (len(self.c) - 1)
+        if isinstance(other, Series):
+            return other.units
+        return [_units(other, self.bits)] + [0] * (len(self.units) - 1)
+
+    def _new(self, units):
+        return Series(units, self.bits)
 
     def __add__(self, other):
-        return Series(a + b for a, b in zip(self.c, self._other(other), strict=True))
+        return self._new(a + b for a, b in zip(self.units, self._other(other), strict=True))
 
     def __sub__(self, other):
-        return Series(a - b for a, b in zip(self.c, self._other(other), strict=True))
+        return self._new(a - b for a, b in zip(self.units, self._other(other), strict=True))
 
     def __mul__(self, other):
         if not isinstance(other, Series):
-            return Series(a * other for a in self.c)
-        b = other.c
-        return Series(mp.fsum(self.c[i] * b[j - i] for i in range(j + 1)) for j in range(len(b)))
+            factor = _units(other, self.bits)
+            return self._new((a * factor) >> self.bits for a in self.units)
+        a, back = self.units, other.units[::-1]
+        return self._new(sum(map(mul, a, back[len(a) - 1 - j:])) >> self.bits for j in range(len(a)))
 
     def __truediv__(self, other):
         if not isinstance(other, Series):
-            return Series(a / other for a in self.c)
-        found, b = [], other.c
+            return self * (1 / mp.mpf(other))
+        found, b = [], other.units
         for j in range(len(b)):
-            found.append((self.c[j] - mp.fsum(found[i] * b[j - i] for i in range(j))) / b[0])
-        return Series(found)
+            found.append(((self.units[j] << self.bits) - sum(map(mul, found, b[j:0:-1]))) // b[0])
+        return self._new(found)
 
     def power(self, q):
-        """By c d(f^q) = q f^q dc, c_0 not 0."""
-        c, found = self.c, [self.c[0] ** q]
+        """By c d(f^q) = q f^q dc, c_0 not 0; q is a Fraction."""
+        c, q = self.units, Fraction(q)
+        with mp.workprec(self.bits + 20):
+            found = [_units(mp.ldexp(c[0], -self.bits) ** (mp.mpf(q.numerator) / q.denominator), self.bits)]
         for j in range(1, len(c)):
-            found.append(mp.fsum((q * i - (j - i)) * c[i] * found[j - i] for i in range(1, j + 1)) / (j * c[0]))
-        return Series(found)
+            total = sum((q.numerator * i - q.denominator * (j - i)) * c[i] * found[j - i] for i in range(1, j + 1))
+            found.append(total // (q.denominator * j * c[0]))
+        return self._new(found)
 
     def exp(self):
-        c, found = self.c, [mp.exp(self.c[0])]
+        c = [i * one for i, one in enumerate(self.units)]
+        with mp.workprec(self.bits + 20):
+            found = [_units(mp.exp(mp.ldexp(self.units[0], -self.bits)), self.bits)]
         for j in range(1, len(c)):
-            found.append(mp.fsum(i * c[i] * found[j - i] for i in range(1, j + 1)) / j)
-        return Series(found)
+            found.append((sum(map(mul, found, c[j:0:-1])) >> self.bits) // j)
+        return self._new(found)
+
+    def slope(self):
+        return self._new([j * a for j, a in enumerate(self.units)][1:] + [0])
 
     def integral(self):
-        return Series([mp.mpf(0)] + [a / (j + 1) for j, a in enumerate(self.c[:-1])])
+        return self._new([0] + [a // (j + 1) for j, a in enumerate(self.units[:-1])])
+
+
+def _units(number, bits):
+    return int(mp.ldexp(mp.mpmathify(number), bits))
 
 
 class Linear:
@@ -125,7 +158,7 @@ class Regularised:
         if mu.slow:
             return ((mu * mu).power(-1) * -self.alpha).exp() * self.A
         fall, rise = mu * -1 + self.mu2, (mu - self.rest) * self.I0
-        root = (fall * fall + rise * (4 * self.mu_inf)).power(mp.mpf(1) / 2)
+        root = (fall * fall + rise * (4 * self.mu_inf)).power(Fraction(1, 2))
         return (root - fall) / (2 * self.mu_inf)
 
     def slope(self, mu):
@@ -192,7 +225,7 @@ def _bottom(law, tau, creep):
         return tau / law.rest
 
     def rate(p):
-        mu = Series([tau / p])
+        mu = Series.of([tau / p])
         mu.slow = tau / p < law.join
         return law.inertial(mu).c[0] * mp.sqrt(p)
 
@@ -207,14 +240,14 @@ def _bottom(law, tau, creep):
 def _coefficients(law, tau, pressure, slow, step):
     """Series in Y, the height over the step: g, and what the equations are made of."""
     terms = int(mp.mp.prec / -mp.log(_RATIO, 2)) + 12
-    p = Series([pressure, -step] + [mp.mpf(0)] * (terms - 2))
+    p = Series.of([pressure, -step] + [mp.mpf(0)] * (terms - 2))
     mu = p.power(-1) * tau
     mu.slow = slow
-    inertial, slope, root = law.inertial(mu), law.slope(mu), p.power(mp.mpf(1) / 2)
+    inertial, slope, root = law.inertial(mu), law.slope(mu), p.power(Fraction(1, 2))
     g = inertial * root
-    if law.yields and abs(g.c[0]) < mp.mpf(2) ** (10 - mp.mp.prec):
-        g.c[0] = mp.mpf(0)
-    dg = Series([(j + 1) * a for j, a in enumerate(g.c[1:])] + [mp.mpf(0)])
+    if law.yields and abs(g.units[0]) < 1 << (_SPARE + 10):
+        g.units[0] = 0
+    dg = g.slope()
     beta = slope * root
     return g, dg, beta.power(-1) * step, (mu - inertial * slope / 2) / beta * step, g.integral() * step
 
@@ -299,7 +332,7 @@ def rollwave(law, slope_deg, Fr2, k, guess, digits=30, radius=1e-3):
 
     def determinant(sigma):
         made, k_, F, angle = kind(*parameters), mp.mpf(k), mp.mpf(Fr2), mp.tan(mp.radians(mp.mpf(slope_deg)))
-        mu = Series([angle])
+        mu = Series.of([angle])
         mu.slow = any(angle < one for one in made.breaks)
         e = (made.inertial(mu) * made.slope(mu)).c[0]
         first, error1 = _grains(sigma, k_, F, angle, e, (0, sigma + 2j * k_ / 3, angle, -1))

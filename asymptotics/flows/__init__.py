@@ -103,6 +103,8 @@ def expand(flow_name: str, regime: str | None = None, order: Any = None, *, numb
     if numbers:
         exact = {name: known[name].read(flow.DEFAULTS[name]) for name in limit.parameters
                  if name in flow.DEFAULTS} | exact
+        if reason := limit.refusal(chosen, exact):
+            raise BadParameter(reason)
     beforehand = {name: exact[name] for name in limit.numbers if name in exact}
     expansion = replace(limit.expand(_power(order, chosen, limit), **beforehand), step=limit.step)
     return expansion.with_parameters(**{name: value for name, value in exact.items() if name in limit.parameters})

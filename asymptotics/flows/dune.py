@@ -10,7 +10,7 @@ from functools import cache
 
 import sympy as sp
 
-from .. import fluid
+from .. import bed, fluid, thin
 from ..hierarchy import Hierarchy, Layer, long_wave
 from ..linearise import FIELDS, Linearisation, x, z
 from ..parameters import Parameter
@@ -20,13 +20,17 @@ from . import Regime
 
 SUMMARY = "dunes: a granular bed under a sheared fluid"
 
-LAW = "linear"  # the friction law, as files of results name it
+LAWS = ("linear", "saturating")  # the friction laws, as files of results name them, the usual one first
 
 PARAMETERS = (
     Parameter("shields", "applied stress over yield stress", sp.Integer(1),
               remedy="below 1 the bed does not yield; give a value above 1"),
     Parameter("mu1", "static friction coefficient", sp.Integer(0), remedy="a friction coefficient is positive"),
     Parameter("b", "slope of the friction law (4.48)", sp.Integer(0), remedy="friction must grow with the shear rate"),
+    Parameter("mu2", "friction of rapid flow, saturating law (1.11) only", sp.Integer(0),
+              remedy="a friction coefficient is positive"),
+    Parameter("I0", "inertial number half-way between mu1 and mu2, saturating law only", sp.Integer(0),
+              remedy="give a positive number"),
     Parameter("Re", "Reynolds number of the grain, (4.39)", sp.Integer(0), remedy="give a positive number"),
     Parameter("depth", "depth of the fluid in grain diameters", sp.Integer(0), infinite=True,
               remedy="give a positive depth, or inf for an unbounded fluid"),
@@ -34,9 +38,10 @@ PARAMETERS = (
     Parameter("kappa", "k/sqrt(Re) (regime small-Re only)", sp.Integer(0), remedy="give a positive number"),
 )
 
-DEFAULTS = {"shields": "2", "mu1": "0.4", "b": "1", "Re": "10", "depth": "inf"}
-LATEX = {"shields": r"\theta", "mu1": r"\mu_1", "Re": r"\mathrm{Re}", "depth": "h", "kappa": r"\kappa",
-         "delta": r"\delta"}
+DEFAULTS = {"shields": "2", "mu1": "0.4", "b": "1", "Re": "10", "depth": "inf",
+            **{name: thin.DEFAULTS[name] for name in ("mu2", "I0")}}
+LATEX = {"shields": r"\theta", "mu1": r"\mu_1", "mu2": r"\mu_2", "I0": "I_0", "Re": r"\mathrm{Re}", "depth": "h",
+         "kappa": r"\kappa", "delta": r"\delta"}
 
 r, mu1, b, shields, xi = sp.symbols("r mu1 b shields xi", positive=True)
 R = sp.Symbol("R")
@@ -205,6 +210,33 @@ def near_yield(order=2) -> Expansion:
                      dict.fromkeys(("b", "Re", "depth", "k")), gauge=sp.Symbol("delta", positive=True))
 
 
+@cache
+def saturating_flux() -> sp.Expr:
+    """a in sigma = i k a R + ... under the saturating law (1.11): shields dQ/d(shields) of `bed`."""
+    return bed.shields * bed.flux_slope(thin.inertial_number, thin.mu2)
+
+
+@cache
+def saturating(order="4/3") -> Expansion:
+    """Saturating friction, unbounded fluid, k^2 << Re: the bed in equilibrium with (4.71), as in (4.81).
+
+    >>> law = saturating().with_parameters(shields="7/5", mu1="2/5", mu2="3/5", I0="3/10", Re=10)
+    >>> print(f"{law.values()[sp.Rational(4, 3)]:.10f}")
+    0.1502189896-0.2601869223j
+    """
+    power = sp.Rational(4, 3)
+    coefficient = saturating_flux() * fluid.boundary_layer_coefficient(1) * power_of_i(power)
+    return Expansion("dune", "saturating", {power: coefficient}, sp.Integer(2), dict.fromkeys((*_SATURATING, "Re")))
+
+
+@cache
+def saturating_shallow(order=1) -> Expansion:
+    """Saturating friction, fluid under a lid, k depth << 1: as (4.84)."""
+    coefficient = saturating_flux() * fluid.shallow_coefficient(0) * sp.I
+    return Expansion("dune", "saturating-shallow", {sp.Integer(1): coefficient}, sp.Integer(2),
+                     dict.fromkeys((*_SATURATING, "depth")))
+
+
 def _named(coefficient: sp.Expr, response) -> sp.Expr:
     """Write r and the logarithms with shields, factor by factor, and put the response's coefficients in."""
     numerator, denominator = sp.fraction(coefficient)
@@ -226,7 +258,15 @@ def _unbounded(values) -> str:
     return "" if depth == sp.oo else f"depth must be inf here, got {depth}: with a lid use --regime shallow"
 
 
+def _saturates(values) -> str:
+    """Why there is no such bed under the saturating law."""
+    ratio = values["mu2"] / values["mu1"] if {"mu1", "mu2"} <= set(values) else sp.oo
+    beyond = f"shields must be less than mu2/mu1 = {ratio}, got {values.get('shields')}: friction cannot exceed mu2"
+    return thin.rising(values) or (beyond if values.get("shields", 0) >= ratio else "")
+
+
 _BED = ("shields", "mu1", "b")
+_SATURATING = ("shields", "mu1", "mu2", "I0")
 _LEADING = "only the leading order is known"
 
 REGIMES = {
@@ -242,4 +282,11 @@ REGIMES = {
     "near-yield": Regime("shields = 1 + delta, delta -> 0 at fixed k", ("b", "Re", "depth", "k"), near_yield,
                          default=sp.Integer(2), available=sp.Integer(2), beyond=_LEADING, lowest=sp.Integer(2),
                          ignores=("mu1",)),
+    "saturating": Regime("friction law (1.11), unbounded fluid, k -> 0 with k^2 << Re", (*_SATURATING, "Re"),
+                         saturating, default=sp.Rational(4, 3), available=sp.Rational(4, 3), beyond=_LEADING,
+                         lowest=sp.Rational(4, 3), ignores=("depth",),
+                         accepts=lambda values: _unbounded(values) or _saturates(values)),
+    "saturating-shallow": Regime("friction law (1.11), fluid under a lid, k depth -> 0", (*_SATURATING, "depth"),
+                                 saturating_shallow, default=sp.Integer(1), available=sp.Integer(1), beyond=_LEADING,
+                                 ignores=("Re",), accepts=lambda values: _needs_depth(values) or _saturates(values)),
 }

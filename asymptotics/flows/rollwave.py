@@ -18,7 +18,7 @@ from .vortex import Fr2, friction, mu1, mu2, tan_slope
 
 SUMMARY = "roll waves in granular flow down an inclined plane (waves along the flow)"
 
-LAW = "saturating"  # the friction law, as files of results name it
+LAWS = ("saturating",)  # the friction law, as files of results name it
 
 PARAMETERS = (
     Parameter("slope_deg", "inclination of the plane in degrees", sp.Integer(0), sp.Integer(90),

@@ -8,17 +8,18 @@ from pathlib import Path
 
 from ..checks import as_number
 from ..errors import ParameterError
-from ..flows import FLOWS, find
+from ..flows import find
 from ..flows.base import allowed, check_flow, numeric
 from ..flows.catalogue import nearest
 from ..modes.solver import DEGREES, TOLERANCE, check_accuracy
 from ..output.columns import explained
-from ..output.text import check_writable, render, terminal_width, whole_file, write
+from ..output.text import check_writable, render, whole_file, write
 from ..status import is_interrupted, is_settled
+from .names import FLOW, flag_of
 from .plotting import look_of, plot_options
 from .progress import Bar
 from .specs import parse_spec
-from .streams import output_closed, say
+from .streams import output_closed, say, terminal_width
 from .verbs import VERBS
 from .verbs.once import NUMBER
 
@@ -28,7 +29,6 @@ FORMS = {".csv": "csv", ".json": "json", ".nc": "netcdf"}  # that the ending of 
 _TEXT = "", ".txt"  # endings of a table
 _RADIANS = 1.6  # degrees: a smaller slope may be one in radians, of which a right angle has 1.57
 _PLOTS = (".png", ".pdf", ".svg")
-FLOW = f"one of {', '.join(FLOWS)}, or your own: path/to/file.py:Class or package.module:Class"
 LAW = ("friction law: linear, saturating, regularised, power, or your own: path/to/file.py:Class; its parameters are "
        "listed by: --law NAME --help")
 
@@ -118,10 +118,6 @@ def _class_of(name, law):
 def flag(item):
     """Command-line flag of a parameter."""
     return flag_of(item.name)
-
-
-def flag_of(name):
-    return "--" + name.replace("_", "-")
 
 
 def nearest_flag(arguments, unknown):

@@ -3,7 +3,8 @@
 Shear stress tau and pressure p = 1 - z fix friction, mu(I) = tau/p, and so the shear rate U' = I sqrt(p): lengths in
 units of (pressure on the bed)/(its weight per volume), in which p = 1 on the bed, velocities as in the scene. Where
 the law has a yield stress, the bed is at rest below p = tau/mu(0); elsewhere it creeps at all depths, and is held by a
-rigid floor where the shear rate has fallen to a given fraction of that at the surface.
+rigid floor where the shear rate has fallen to a given fraction of that at the surface. Heights of a bed that yields are
+told by zeta, those of a creeping one by ln I.
 
 In zeta = sqrt(p), with e = I mu'(I): beta = mu' zeta, alpha = tau/zeta^2 - e/2, and with the weight g = U' = I zeta
 
@@ -27,20 +28,62 @@ from .law import Law
 
 _REST = 1e-8  # inertial number at which friction of a law with a yield stress is to rise linearly
 _NODES = 96  # of quadrature over a piece
+_DEEPEST = 1e6  # zeta of a floor
 _LINEAR = 1e-3  # disagreement of its slope there with that at twice the number
 
 
 @dataclass(frozen=True)
-class Piece:
-    """Part of the bed between two heights at which the law is smooth; `speed` at 0 <= s <= 1, below and at the top."""
+class Sinking:
+    """Heights of part of a bed that yields, by how far zeta has fallen from that at its lower edge.
 
-    depth: float  # r - zeta at the lower edge, where the law has a yield stress
+    Friction that has a largest value mu2 sends I to infinity at zeta = a, a^2 = tau/mu2, just above the bed maybe:
+    zeta - a falls exponentially, so that the pole becomes an entire function of s.
+    """
+
+    depth: float  # zeta at the yield surface less that at the lower edge
     zeta: float  # at the lower edge
     span: float  # of zeta
+
+    def at(self, law: Law, tau: float, s: Any) -> tuple[Any, Any, Any]:
+        """zeta, I and -dzeta/ds at the points s."""
+        top = law.range[1]
+        if np.isfinite(top):
+            gap = self.zeta - np.sqrt(tau / top)
+            rate = np.log1p(-self.span / gap)
+            fall, stretch = -gap * np.expm1(rate * s), -gap * rate * np.exp(rate * s)
+        else:
+            fall, stretch = self.span * s, self.span + 0 * s
+        zeta, depth = self.zeta - fall, self.depth + fall
+        return zeta, law.beyond(law.start * depth * (2 * zeta + depth) / zeta**2), stretch
+
+
+@dataclass(frozen=True)
+class Creeping:
+    """Heights of part of a bed without yield stress, by ln I: nothing but mu(I) and its slope is asked for.
+
+    The shear rate falls by orders of magnitude, evenly so in s, and states of rest lie at infinity.
+    """
+
+    low: float  # I at the lower edge
+    high: float
+
+    def at(self, law: Law, tau: float, s: Any) -> tuple[Any, Any, Any]:
+        """zeta, I and -dzeta/ds at the points s."""
+        fall = np.log(self.high / self.low)
+        inertial = np.clip(self.low * np.exp(fall * s), self.low, np.nextafter(self.high, 0))  # this side of breaks
+        mu = law.mu(inertial)
+        zeta = np.sqrt(tau / mu)
+        return zeta, inertial, zeta * law.slope(inertial) * inertial * fall / (2 * mu)
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Part of the bed between two heights at which the law is smooth, with its velocity."""
+
+    heights: Sinking | Creeping
     singular: bool  # whether its lower edge is the yield surface
     low: float  # velocity at the lower edge
     series: Any  # of the velocity above it
-    error: float
 
     @property
     def top(self) -> float:
@@ -51,78 +94,46 @@ class Piece:
 def pieces(law: Law, shields: float, creep: float) -> tuple[Piece, ...]:
     """The parts of the bed from below, with their velocities by quadrature to rounding."""
     tau = law.rest * shields
-    edges = _edges(law, tau, creep)
     found: list[Piece] = []
-    low = 0.0
-    for index, (zeta, above) in enumerate(zip(edges, edges[1:], strict=False)):
-        start = index == 0 and law.start > 0
-        bare = Piece(_excess(shields) if start else 0.0, zeta, zeta - above, start, low, np.zeros(1), 0.0)
-        span = bare.depth if start and len(edges) == 2 else bare.span
-        bare = Piece(0.0 if start else max(edges[0] - zeta, 0.0), zeta, span, start, low, np.zeros(1), 0.0)
-        found.append(_integrated(law, tau, bare))
-        low = found[-1].top
+    for heights in _yielding(law, tau, shields) if law.yields else _creeping(law, tau, creep):
+        low = found[-1].top if found else 0.0
+        found.append(Piece(heights, law.yields and not found, low, _velocity(law, tau, heights)))
     return tuple(found)
 
 
-def _excess(shields):
-    """sqrt(shields) - 1 without cancellation."""
-    return (shields - 1) / (np.sqrt(shields) + 1)
+def _yielding(law, tau, shields):
+    """The parts of a bed from its yield surface up."""
+    bottom = float(np.sqrt(tau / law.start))
+    inner = (float(np.sqrt(tau / law.mu(one))) for one in law.breaks if 0 < one < np.inf)
+    edges = [bottom, *sorted((zeta for zeta in inner if 1 < zeta < bottom), reverse=True), 1.0]
+    found = [Sinking(bottom - low, low, low - high) for low, high in zip(edges, edges[1:], strict=False)]
+    exact = (shields - 1) / (np.sqrt(shields) + 1)  # sqrt(shields) - 1 without cancellation
+    return found if len(found) > 1 else [Sinking(0.0, bottom, exact)]
 
 
-def _edges(law, tau, creep):
-    """zeta at the ends of the pieces, from the bottom of the bed to 1."""
-    if law.start > 0:
-        bottom = float(np.sqrt(tau / law.start))
-    else:
-        surface = float(law.beyond(tau))
-        low, high = 1.0, 2.0
-        while _shear_rate(law, tau, high) > creep * surface:
-            high *= 2
-            if high > 1e6:
-                raise ParameterError(f"law {law.name}: friction falls too slowly as I -> 0 for creep = {creep:g}: the "
-                                     "floor lies a million lengths deep; raise creep")
-        while low < (middle := (low + high) / 2) < high:
-            low, high = (middle, high) if _shear_rate(law, tau, middle) > creep * surface else (low, middle)
-        bottom = high
-    inner = [float(np.sqrt(tau / law.mu(one))) for one in law.breaks if 0 < one < np.inf]
-    return [bottom, *sorted((zeta for zeta in inner if 1 < zeta < bottom), reverse=True), 1.0]
+def _creeping(law, tau, creep):
+    """The parts of a bed from where its shear rate, I zeta = I sqrt(tau/mu), is `creep` times that on top."""
+    surface = float(law.inverse(tau))
+
+    def slow(number):
+        return number * np.sqrt(tau / law.mu(number)) < creep * surface
+
+    low, high = np.log(creep * surface / _DEEPEST), np.log(surface)
+    if not slow(np.exp(low)):
+        raise ParameterError(f"law {law.name}: friction falls too fast as I -> 0 for creep = {creep:g}: the floor "
+                             f"lies {_DEEPEST:g} lengths deep; raise creep")
+    while low < (middle := (low + high) / 2) < high:
+        low, high = (middle, high) if slow(np.exp(middle)) else (low, middle)
+    bottom = float(np.exp(high))
+    edges = [bottom, *sorted(one for one in law.breaks if bottom < one < surface), surface]
+    return [Creeping(slow, fast) for slow, fast in zip(edges, edges[1:], strict=False)]
 
 
-def _shear_rate(law, tau, zeta):
-    return float(law.beyond(tau / zeta**2)) * zeta
-
-
-def _map(law, tau, piece, s):
-    """Depth below the lower edge of a piece in zeta, and its slope in s.
-
-    Friction that has a largest value mu2 sends I to infinity at zeta = a, a^2 = tau/mu2, just above the bed maybe:
-    zeta - a falls exponentially, so that the pole becomes an entire function of s.
-    """
-    top = law.range[1]
-    if not np.isfinite(top):
-        return piece.span * s, piece.span + 0 * s
-    gap = piece.zeta - np.sqrt(tau / top)
-    rate = np.log1p(-piece.span / gap)
-    return -gap * np.expm1(rate * s), -gap * rate * np.exp(rate * s)
-
-
-def _inertial(law, tau, piece, s):
-    """zeta and I at the points s of a piece."""
-    if law.start > 0:
-        fall = _map(law, tau, piece, s)[0]
-        zeta, depth = piece.zeta - fall, piece.depth + fall
-        return zeta, law.beyond(law.start * depth * (2 * zeta + depth) / zeta**2)
-    top = piece.zeta - piece.span
-    below = piece.span - _map(law, tau, piece, s)[0]
-    zeta = top + below
-    return zeta, law.fallen(top**2 / tau, below * (top + zeta) / tau)
-
-
-def _integrated(law, tau, piece):
-    """The piece with its velocity: the antiderivative of the series of dU/ds = I zeta dz/ds."""
+def _velocity(law, tau, heights):
+    """T-coefficients of the velocity over that at the lower edge: the antiderivative of the series of I zeta dz/ds."""
     def slope(s):
-        zeta, inertial = _inertial(law, tau, piece, s)
-        return np.asarray(2 * _map(law, tau, piece, s)[1] * zeta**2 * inertial)[None]
+        zeta, inertial, stretch = heights.at(law, tau, s)
+        return np.asarray(2 * stretch * zeta**2 * inertial)[None]
 
     try:
         found = fit(slope)
@@ -130,17 +141,15 @@ def _integrated(law, tau, piece):
         raise ParameterError(f"law {law.name}: the shear rate of the bed is not smooth near s = {rough.s:.4g}: "
                              "friction must rise smoothly with I, linearly from rest, and the stress stay clear of its "
                              "largest value") from None
-    series = C.chebint(found.series[0], lbnd=-1) / 2
-    return Piece(piece.depth, piece.zeta, piece.span, piece.singular, piece.low, series, float(found.cut[0]))
+    return C.chebint(found.series[0], lbnd=-1) / 2
 
 
 def profile(law: Law, tau: float, piece: Piece, inertia: float = 1.0) -> Callable[[Any], Profile]:
     """Return the base state of a piece as a function of s."""
-    scale = float(law.slope(_inertial(law, tau, piece, np.array([1.0]))[1])[0])
+    scale = float(law.slope(piece.heights.at(law, tau, np.array([1.0]))[1])[0])
 
     def at(s):
-        zeta, inertial = _inertial(law, tau, piece, s)
-        stretch = _map(law, tau, piece, s)[1]
+        zeta, inertial, stretch = piece.heights.at(law, tau, s)
         with np.errstate(divide="ignore", invalid="ignore"):
             slope = law.slope(inertial)
             shear_rate = inertial * zeta
@@ -156,7 +165,7 @@ def profile(law: Law, tau: float, piece: Piece, inertia: float = 1.0) -> Callabl
             alpha=tau / zeta**2 - inertial * slope / 2,
             g=shear_rate,
             dg=dg,
-            clear=slope / scale * zeta**4 if law.start > 0 else 1.0,
+            clear=slope / scale * zeta**4 if law.yields else 1.0,
         )
 
     return at
@@ -193,12 +202,19 @@ def flux_slopes(law: Law, shields: float, creep: float) -> tuple[float, float]:
     parts = pieces(law, shields, creep)
     for piece in parts:
         nodes, weights = np.polynomial.legendre.leggauss(_NODES)
-        zeta, inertial = _inertial(law, tau, piece, (1 + nodes) / 2)
-        stretch = _map(law, tau, piece, (1 + nodes) / 2)[1]
+        zeta, inertial, stretch = piece.heights.at(law, tau, (1 + nodes) / 2)
         total += float(weights @ (stretch * (zeta**2 - 1) * law.rest / law.slope(inertial)))
-    bottom = parts[0].zeta
-    over_floor = 0.0 if law.start > 0 else (bottom**2 - 1) * _shear_rate(law, tau, bottom)
-    return total, over_floor
+    if law.yields:
+        return total, 0.0
+    zeta, inertial, _ = parts[0].heights.at(law, tau, 0.0)
+    return total, float((zeta**2 - 1) * inertial * zeta)
+
+
+def lowest(law: Law, shields: float, creep: float) -> float:
+    """z of the yield surface, or of the floor."""
+    if law.yields:
+        return 1 - shields
+    return float(1 - pieces(law, shields, creep)[0].heights.at(law, law.rest * shields, 0.0)[0] ** 2)
 
 
 def check(law: Law, name: str, shields: float) -> None:

@@ -70,7 +70,7 @@ class Dune(Granular):
 
     @property
     def bottom(self):  # type: ignore[override]
-        return 1 - self.shields if self.law.yields else 1 - self._pieces[0].zeta ** 2
+        return beds.lowest(self.law, self.shields, self._creep)
 
     def evaluate(self, k):
         if self.fluid == "closed-form":

@@ -110,7 +110,7 @@ class Granular(Flow, metaclass=_Scene):
 
         >>> from stability.flows import Dune, Saturating
         >>> Dune.under(Saturating)(shields=1.4).law
-        Saturating(mu1=0.4, mu2=0.6434539784417847, I0=0.279)
+        Saturating(mu1=0.4, mu2=0.6434683848584607, I0=0.279)
         """
         scene = vars(cls).get("scene", cls)
         if law is scene.friction and not scene.unit:

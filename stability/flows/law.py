@@ -80,7 +80,7 @@ class Law:
     @property
     def start(self) -> float:
         """mu as I -> 0: grains at rest bear less. 0 where the law has no yield stress."""
-        return float(self.mu(_AT_REST))
+        return float(self.mu(_AT_REST)) if self.yields else 0.0
 
     @property
     def rest(self) -> float:
@@ -112,10 +112,6 @@ class Law:
             step = (self.mu(found) - self.start - excess) / self.slope(found)
             found = np.where(np.abs(step) < found / 2, found - step, found)
         return np.where(excess > 0, found, 0.0)
-
-    def fallen(self, inverse: Any, rise: Any) -> Any:
-        """The inertial number at which 1/mu exceeds a number by `rise` >= 0: a law may lose fewer digits so."""
-        return self.beyond(1 / (inverse + rise) - self.start)
 
     def check(self, mu: Any) -> None:
         """Raise ParameterError where there is no inertial number at which friction is mu."""

@@ -12,8 +12,6 @@ from . import sources
 from .base import parameter
 from .law import Law, check_law
 
-_CLOSE = 1e-12  # relative difference of friction coefficients that is rounding
-
 
 @dataclass(frozen=True)
 class Linear(Law):
@@ -222,13 +220,6 @@ class Regularised(Law):
             root = np.sqrt(np.maximum(fall**2 + 4 * self.mu_inf * rise, 0))
             upper = np.where(fall > 0, 2 * rise / (fall + root), (root - fall) / (2 * self.mu_inf or 1.0))
         return np.where(mu < self._upper(self.I1), lower, upper)
-
-    def fallen(self, inverse, rise):
-        """On the lower branch ln I falls like alpha/mu^2, without the rounding of the latter."""
-        mu = 1 / inverse
-        if mu > self._upper(self.I1) * (1 + _CLOSE):
-            return self.beyond(1 / (inverse + rise))
-        return self.beyond(mu) * np.exp(-rise * (self.alpha * (2 * inverse + rise)))
 
     @property
     def _first(self):

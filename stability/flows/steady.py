@@ -175,7 +175,7 @@ class Plate(Saturated):
 
     @property
     def bottom(self):  # type: ignore[override]
-        return 1 - self.shields if self.law.yields else 1 - self._pieces[0].zeta ** 2
+        return beds.lowest(self.law, self.shields, getattr(self, "creep", 0.0))
 
     def layers(self, names):
         return beds.layers(self.law, self.shields, getattr(self, "creep", 0.0), self.grains**2)

@@ -1,7 +1,9 @@
 """The reference is complete: every public name says units or scales, what it raises, and shows itself in an example."""
 
 import doctest
+import importlib
 import inspect
+import pkgutil
 import re
 from dataclasses import fields, is_dataclass
 
@@ -96,10 +98,11 @@ def test_what_is_lacking_is_found():
 
 
 def examples():
-    """The doctests of the public names and of their methods, each once."""
+    """The doctests of all modules, each once."""
     finder, found = doctest.DocTestFinder(recurse=True), {}
-    modules = {inspect.getmodule(value) for value in public().values()} | {stability, asymptotics}
-    for module in sorted(modules, key=lambda one: one.__name__):
+    names = [name for package in (stability, asymptotics) for _, name, _ in
+             pkgutil.walk_packages(package.__path__, f"{package.__name__}.") if not name.endswith("__main__")]
+    for module in map(importlib.import_module, ("stability", "asymptotics", *sorted(names))):
         for test in finder.find(module, module.__name__):
             if test.examples:
                 found[test.name] = test
