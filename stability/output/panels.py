@@ -123,6 +123,11 @@ def scale_of(values: Any) -> str:
     return "log" if logarithmic else "linear"
 
 
+def scale_found(values: Any) -> str:
+    """The scale of values that were not asked for but found: "log" if they span decades, however they lie."""
+    return "log" if spans_decades(np.asarray(values, dtype=float)) else "linear"
+
+
 def swept_curves(x: Iterable[float], y: Iterable[float], level: str, label: str | None = None, kind: str = MARKED,
                  **more: Any) -> tuple[Curve, ...]:
     """A curve over a swept parameter, and for each infinite value of it a level, labelled `level`."""

@@ -15,7 +15,7 @@ from ..errors import ModeLost, ParameterError
 from ..flows.base import check_flow
 from ..modes.solver import DEGREES, TOLERANCE, check_accuracy
 from ..numerics.threads import one_thread
-from ..output.panels import DOTS, PHASE_SPEED, POINTS, WAVENUMBER, Curve, Panel, scale_of
+from ..output.panels import DOTS, PHASE_SPEED, POINTS, WAVENUMBER, Curve, Panel, scale_found, scale_of
 from ..output.text import Row
 from ..status import is_resolved, unresolved
 from .contour import passes, trace
@@ -60,7 +60,7 @@ class NeutralCurve(ZeroGrowth):
         k, value, error, speed = (np.array([getattr(point, name) for point in known], dtype=float)
                                   for name in ("k", "value", "error", "phase_speed"))
         curve = Curve(*self.trace.T), Curve(k, value, None, DOTS, None, error, 0, status)
-        return (Panel(x, replace(value_axis(self), scale=scale_of(self.trace[:, 1])), curve),
+        return (Panel(x, replace(value_axis(self), scale=scale_found(self.trace[:, 1])), curve),
                 Panel(x, PHASE_SPEED, (Curve(k, speed, None, POINTS, status=status),)))
 
     def rows(self) -> list[Row]:
