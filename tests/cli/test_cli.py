@@ -520,8 +520,8 @@ def test_ctrl_c_stops_a_sweep_at_once():
     assert {line.split()[-1] for line in out.splitlines()[1:]} <= {"resolved", "interrupted"}  # what was done is kept
 
 
-@pytest.mark.parametrize("program", ["stability", "asymptotics"])
-def test_ctrl_c_while_importing_is_one_line(program):
+@pytest.mark.parametrize(("program", "words"), [("stability", ["base", "dune"]), ("asymptotics", ["flows"])])
+def test_ctrl_c_while_importing_is_one_line(program, words):
     """As if it came with the first heavy package."""
     code = f"""
 import sys
@@ -530,7 +530,7 @@ class Interrupt:
         if name in ("numpy", "sympy"):
             raise KeyboardInterrupt
 sys.meta_path.insert(0, Interrupt)
-sys.argv = ["{program}", "flows"]
+sys.argv = ["{program}", *{words}]
 from {program}.cli import main
 sys.exit(main())
 """
