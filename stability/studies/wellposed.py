@@ -63,7 +63,7 @@ class IllPosedness(Record):
     >>> from stability import flows
     >>> found = ill_posedness(flows.RollWave(slope_deg=32.6), 3)
     >>> found.dimension, [row["ill_posed"] for row in found]
-    ('point', ['yes', 'yes', 'no'])
+    ('point', ['yes', 'yes', 'yes'])
     """
 
     flow: Any
