@@ -47,15 +47,21 @@ class Sinking:
 
     def at(self, law: Law, tau: float, s: Any) -> tuple[Any, Any, Any]:
         """zeta, I and -dzeta/ds at the points s."""
-        top = law.range[1]
-        if np.isfinite(top):
-            gap = self.zeta - np.sqrt(tau / top)
-            rate = np.log1p(-self.span / gap)
-            fall, stretch = -gap * np.expm1(rate * s), -gap * rate * np.exp(rate * s)
-        else:
-            fall, stretch = self.span * s, self.span + 0 * s
-        zeta, depth = self.zeta - fall, self.depth + fall
-        return zeta, law.beyond(law.start * depth * (2 * zeta + depth) / zeta**2), stretch
+        top, span = law.range[1], self.span
+        if not np.isfinite(top):
+            zeta, depth = self.zeta - span * s, self.depth + span * s
+            return zeta, law.beyond(self._excess(law, zeta, depth)), span + 0 * s
+        pole = np.sqrt(tau / top)
+        gap = self.zeta - pole
+        rate = np.log1p(-span / gap)
+        left = gap * np.exp(rate * s)  # zeta - a
+        zeta, depth = pole + left, self.depth - gap * np.expm1(rate * s)
+        lack = top * left * (zeta + pole) / zeta**2
+        return zeta, law.between(self._excess(law, zeta, depth), lack), -rate * left
+
+    def _excess(self, law, zeta, depth):
+        """Friction over that at rest."""
+        return law.start * depth * (2 * zeta + depth) / zeta**2
 
 
 @dataclass(frozen=True)

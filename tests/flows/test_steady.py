@@ -24,11 +24,12 @@ def plate_velocity(lam, theta, Z):
     return 2 / lam * (-(r**3 - y**3) / 3 + (r**2 - a**2) * (r - y) + a / 2 * (r**2 - a**2) * log)
 
 
-@pytest.mark.parametrize("theta", [1.1, 1.3, 1.5])
+@pytest.mark.parametrize("theta", [1.1, 1.3, 1.5, *np.linspace(1.58, 1.599, 5)])  # up to 1.6, where none is steady
 def test_the_plate_has_the_profile_of_the_thesis(theta):
     found = base_flow(Plate(shields=theta, law=LAW))
     exact = LAW.I0 * plate_velocity(1.6, theta, found.z)
-    np.testing.assert_allclose(found.U, exact, atol=1e-13 * exact.max())
+    rounding = 1e-15 / (1.6 - theta)  # of theta
+    np.testing.assert_allclose(found.U, exact, atol=max(1e-13, rounding) * exact.max())
     assert np.abs(found.U - LAW.I0 * plate_velocity(1.616, theta, found.z)).max() > 1e-3 * exact.max()
 
 
