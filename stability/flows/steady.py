@@ -5,7 +5,8 @@ rate U' = I sqrt(p); the velocity follows by quadrature to rounding. beta = p mu
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from math import atan, degrees, radians, tan
 from typing import Any, ClassVar
 
@@ -22,6 +23,8 @@ from .base import parameter
 from .granular import Granular
 from .law import Law
 from .laws import Saturating
+
+_CROWD = 8  # distance from the end at which heights crowd: this power of s
 
 
 @dataclass(frozen=True)
@@ -40,19 +43,34 @@ class Sheared:
 
 
 def sheared_layers(law: Law, parts: list[tuple[str, Callable[[Any], Sheared]]], inertia: float = 1.0) -> list[Layer]:
-    """The layers of a steady flow, from that at rest at its lower edge upwards."""
+    """The layers of a steady flow, from that at rest at its lower edge upwards.
+
+    Where friction rises as another power of I than the first, the shear rate is a power of the distance from the yield
+    surface that is no integer: heights crowd there then.
+    """
     low, found = 0.0, []
-    for name, state in parts:
-        try:
-            one = fit(lambda s, state=state: np.asarray(state(s).shear_rate * state(s).dz)[None])
-        except Rough as rough:
+    for name, plain in parts:
+        for state in (plain, partial(_crowded, plain, 0), partial(_crowded, plain, 1)):
+            try:
+                one = fit(lambda s, state=state: np.asarray(state(s).shear_rate * state(s).dz)[None])
+                break
+            except Rough as rough:
+                place = rough.s
+        else:
             raise ParameterError(f"layer {name}: the shear rate under law {law.name} is not smooth near "
-                                 f"s = {rough.s:.4g}: friction must rise smoothly with I, linearly from rest, and "
-                                 "the stress stay clear of its largest value") from None
+                                 f"s = {place:.4g}: friction must rise smoothly with I, and the stress stay clear of "
+                                 "its largest value") from None
         series = C.chebint(one.series[0], lbnd=-1) / 2
         found.append(Layer(name, _profile(law, state, series, low, inertia)))
         low += float(C.chebval(1.0, series))
     return found
+
+
+def _crowded(state, end, s):
+    """What a function of s says where heights crowd at one of its ends, 0 or 1."""
+    x = s if end == 0 else 1 - s
+    here = state(x**_CROWD if end == 0 else 1 - x**_CROWD)
+    return replace(here, dz=here.dz * _CROWD * x ** (_CROWD - 1))
 
 
 def _profile(law, state, series, low, inertia):
@@ -165,9 +183,7 @@ class Plate(Saturated):
 
     @classmethod
     def extras(cls, law):
-        return {} if law.yields else {"creep": parameter(
-            1e-6, 1e-9, 0.5, look=(1e-8, 1e-2), reason="the floor must hold the bed, and rounding leaves it no more",
-            meaning="shear rate at the rigid floor of the bed over that at the plate; the law has no yield stress")}
+        return beds.creep_parameter(law, surface="plate")
 
     @property
     def _pieces(self):

@@ -89,8 +89,8 @@ class Walk(Walker):
     def beyond(self, k):
         """Step on until wavenumber k lies behind, by the same steps whichever it is."""
         side = copysign(1.0, log(k / self.segments[0][0].k))
-        if self.solver.flow.functions:
-            self.solver.prepare(np.array(_ladder(self.now.k, k)))
+        if self.solver.flow.functions and not self.solver.foresight:
+            self.solver.prepare(np.array(_likely(self.now.k, k, side * self.step)))
         while side * log(k / self.now.k) > 0:
             if self._attempts and self._attempts % _STRETCH == 0:
                 if abs(log(self.now.k / self._behind)) < _LEAST_WAY:
@@ -239,10 +239,14 @@ def _rung(k, step):
     return rung if abs(log(rung / k)) > 0.5 * abs(step) and (rung - k) * step > 0 else ahead
 
 
-def _ladder(start, end):
-    """The rungs from a little before `start` to a little behind `end`."""
-    low, high = (floor(log(side(start, end)) / _RUNG) for side in (min, max))
-    return [exp(_RUNG * index) for index in range(low - 1, high + 3)]
+def _likely(start, end, step):
+    """The wavenumbers that a walk comes to on its way if every step is as long as it may be."""
+    found = []
+    while (end - start) * step > 0:
+        start = _rung(start, step)
+        found.append(start)
+        step = copysign(min(2 * abs(step), _LARGEST_STEP), step)
+    return found
 
 
 def _extrapolate(now, before, ratio):

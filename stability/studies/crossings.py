@@ -49,7 +49,7 @@ def _modes(plane, k, value):
     """Points at k of the modes that matter at a value."""
     solver = plane.solver(value)
     if default_mode(plane.flow_at(value)) == "surface":
-        with branch_of(solver, surface_branch) as branch:
+        with branch_of(solver, surface_branch, [k]) as branch:
             found, lost = branch.at([k])
         if lost:
             raise ModeLost(lost[k])

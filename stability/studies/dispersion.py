@@ -10,7 +10,7 @@ from ..checks import check_flag, check_options, check_wavenumbers
 from ..errors import ModeLost, naming
 from ..flows.base import check_flow
 from ..modes.accuracy import DEGREES, TOLERANCE, check_accuracy
-from ..modes.branch import Branch, surface_branch
+from ..modes.branch import Branch, rough_solver, surface_branch
 from ..modes.eigenvalue import Eigenvalues
 from ..modes.listing import leading_modes, listed
 from ..modes.memory import branch_of
@@ -260,7 +260,7 @@ def _leading(solver, wavenumbers):
 def _followed(solver, start, wavenumbers):
     told = set()
     try:
-        with branch_of(solver, start) as branch:
+        with branch_of(solver, start, wavenumbers) as branch:
             for first in range(0, len(wavenumbers), _PORTION):
                 found, lost = branch.at(wavenumbers[first: first + _PORTION])
                 met = [event for event in (*branch.collisions, *branch.encounters) if event not in told]
@@ -270,16 +270,17 @@ def _followed(solver, start, wavenumbers):
         yield {}, dict.fromkeys(wavenumbers.tolist(), str(reason)), ()
 
 
-def leading_branch(solver):
+def leading_branch(solver, known=None):
     """Return the branch of the mode that leads at `flow.wavenumber`, within its symmetry class on half the domain.
 
-    Of two that lead together, the one that travels downstream faster.
+    Of two that lead together, the one that travels downstream faster. `known` are modes of a flow that is nearly the
+    same, {k: mode}.
     """
     rivals = listed(solver, solver.flow.wavenumber, 1).modes
     best = max(mode.growth_rate - mode.error for mode in rivals)
     mode = max((mode for mode in rivals if mode.growth_rate + mode.error >= best), key=lambda mode: mode.phase_speed)
     (half,) = (half for half in solver.halves if half.flow == mode.flow)
-    return Branch(half, mode)
+    return Branch(half, mode, rough_solver(half, known))
 
 
 def _most_unstable(solver, wavenumbers):

@@ -261,7 +261,7 @@ def _optimum(solver, search, mode):
     if solver.flow.decays:
         return Optimum(solver.flow, (), _stable("leading", high), settings)
     try:
-        looks = [surface_look(solver, low, high)] if solver.flow.has_surface_mode() else []
+        looks = [surface_look(solver, low, high, growing=True)] if solver.flow.has_surface_mode() else []
         looks += [look(solver, low, high)] if mode == "leading" else []
     except ModeLost as reason:
         return Optimum(solver.flow, (), unresolved(reason), settings)

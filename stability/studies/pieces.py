@@ -5,6 +5,7 @@ from itertools import islice
 from .. import status
 from ..errors import StabilityError
 from ..flows.sources import faults
+from ..modes.memory import apart
 from .critical import critical_sweep
 from .dispersion import dispersion
 from .kmax import k_max_sweep
@@ -15,7 +16,7 @@ def compute(piece, attempt=0):
 
     `attempt` does nothing: it tells an engine that remembers calls by their arguments that this is another one.
     """
-    with faults():
+    with faults(), apart():
         return [list(row) for row in _ROWS[piece.quantity](piece)]
 
 
