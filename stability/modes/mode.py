@@ -60,6 +60,16 @@ class Mode(Eigenvalue):
         """Estimate of the absolute error of d sigma/dk."""
         return _SLOPE * self.error / self.k
 
+    @property
+    def group_speed(self) -> float:
+        """Real part of the group velocity d omega/dk, V: omega = i sigma, so that it is -Im d sigma/dk."""
+        return (1j * self.slope).real + 0.0  # no negative zero
+
+    @property
+    def group_error(self) -> float:
+        """Bound of the absolute error of the group speed."""
+        return self.slope_error
+
     def fields(self, z: "ArrayLike") -> "Fields":
         """Return velocities, stresses and pressure of the eigenfunction at heights z, as `eigenfunction.Fields`.
 

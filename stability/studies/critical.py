@@ -13,7 +13,7 @@ import numpy as np
 from ..checks import check_flag, check_range
 from ..errors import NotResolved, naming
 from ..flows.base import check_flow, check_parameter_name, span_of
-from ..modes.solver import DEGREES, TOLERANCE, check_accuracy
+from ..modes.accuracy import DEGREES, TOLERANCE, check_accuracy
 from ..numerics.threads import one_thread
 from ..output.panels import OTHERS, POINTS, WAVENUMBER, Axis, Curve, Panel, scale_of, swept_curves
 from ..output.record import Record
@@ -194,16 +194,16 @@ def critical_sweep(flows: "Iterable[Flow]", vary: str, *, span: tuple[float, flo
                    search: tuple[float, float] | None = None, long_wave: bool = False, tolerance: float = TOLERANCE,
                    max_degree: int = DEGREES[-1]) -> Iterator[NeutralPoint]:
     """Yield `critical` of each flow in turn; what failed is in its status."""
-    tolerance, max_degree = check_accuracy(tolerance, max_degree)
+    accuracy = check_accuracy(tolerance, max_degree)
     for flow in flows:
-        yield _critical(landscape_of(flow, vary, span, search, tolerance, max_degree), long_wave)
+        yield _critical(landscape_of(flow, vary, span, search, accuracy), long_wave)
 
 
-def landscape_of(flow, vary, span, search, tolerance, max_degree):
+def landscape_of(flow, vary, span, search, accuracy):
     check_parameter_name(flow, vary)
     span = span_of(flow, vary) if span is None else check_range(span, "span")
     search = None if search is None else check_range(search, "search")
-    return Landscape(flow, vary, span, search, tolerance, max_degree)
+    return Landscape(flow, vary, span, search, accuracy)
 
 
 @one_thread
@@ -221,10 +221,8 @@ def _critical(land, long_wave):
 
 def settings_of(land):
     """What a result depends on besides flow and parameter."""
-    plane = land.planes[0]
     return {"range": f"{land.span[0]:g} .. {land.span[1]:g}", "search": f"{land.search[0]:g} .. {land.search[1]:g}",
-            "tolerance": plane.tolerance,
-            "max_degree": plane.max_degree}
+            **land.planes[0].accuracy.settings}
 
 
 def point_of(land, zero, settings):

@@ -9,16 +9,17 @@ import numpy as np
 from ..checks import check_flag, check_options, check_wavenumbers
 from ..errors import ModeLost, naming
 from ..flows.base import check_flow
+from ..modes.accuracy import DEGREES, TOLERANCE, check_accuracy
 from ..modes.branch import Branch, rough_solver, surface_branch
 from ..modes.eigenvalue import Eigenvalues
 from ..modes.listing import leading_modes, listed
 from ..modes.memory import branch_of
 from ..modes.mode import Mode, require
 from ..modes.short_waves import ill_posed_somewhere, ill_posed_strips
-from ..modes.solver import DEGREES, TOLERANCE, Solver, check_accuracy
+from ..modes.solver import Solver
 from ..modes.tracking import Collision, Encounter
 from ..numerics.threads import one_thread
-from ..output.panels import GROWTH_RATE, LINE, PHASE_SPEED, POINTS, WAVENUMBER, Curve, Panel, scale_of
+from ..output.panels import GROWTH_RATE, LINE, PHASE_SPEED, POINTS, WAVENUMBER, Axis, Curve, Panel, scale_of
 from ..output.record import Record
 from ..output.text import Row, measured
 from ..status import INTERRUPTED, LOST, Status, is_resolved
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from ..flows import Flow
 
 MODES = ("surface", "leading", "most-unstable")
+GROUP_SPEED = Axis("group_speed", "group speed $c_g$")
 
 _NOT_LOOKED = "the flow is ill posed; whether an internal mode outgrows the surface mode is told with rivals=True"
 _PORTION = 200  # wavenumbers followed before what is done is handed over
@@ -93,16 +95,34 @@ class DispersionRelation(Eigenvalues, Record):
     def subtitle(self) -> str:
         return f"; {self.mode} mode"
 
+    @property
+    def group_speed(self) -> np.ndarray:
+        """Real parts of the group velocity d omega/dk = i d sigma/dk, V."""
+        return self._of_each("group_speed")
+
+    @property
+    def group_error(self) -> np.ndarray:
+        """Bounds of the absolute error of the group speed."""
+        return self._of_each("group_error")
+
     def panels(self) -> tuple[Panel, ...]:
-        """Growth rate and phase speed against k."""
+        """Growth rate, phase speed and group speed against k."""
         modes = sorted(self.modes, key=lambda mode: mode.k)
         k, error = (np.array([getattr(mode, name) for mode in modes], dtype=float) for name in ("k", "error"))
+        quantities = [(GROWTH_RATE, error), (PHASE_SPEED, error / k)]
+        if self._differentiated:
+            quantities.append((GROUP_SPEED, np.array([mode.group_error for mode in modes], dtype=float)))
         status = tuple(map(self._status, modes))
         x = replace(WAVENUMBER, scale=scale_of(k))
         kind = LINE if len(k) > 1 else POINTS
         return tuple(Panel(x, y, (Curve(k, np.array([getattr(mode, y.name) for mode in modes]), kind=kind,
                                         y_error=bars, status=status),), zero="y" if y is GROWTH_RATE else "")
-                     for y, bars in ((GROWTH_RATE, error), (PHASE_SPEED, error / k)))
+                     for y, bars in quantities)
+
+    @property
+    def _differentiated(self) -> bool:
+        """Whether d sigma/dk is known: solve_bvp gives values alone."""
+        return self.method == "collocation"
 
     def rows(self) -> list[Row]:
         return [self._row(k, mode) for k, mode in self._points()]
@@ -130,9 +150,10 @@ class DispersionRelation(Eigenvalues, Record):
 
     def _row(self, k: float, mode: Any) -> Row:
         """Without numbers where the mode is lost, or where the most unstable one is not resolved: that is no result."""
-        resolution = "degree" if self.method == "collocation" else "nodes"
+        resolution = "degree" if self._differentiated else "nodes"
         refused = mode is None or self.mode == "most-unstable" and not is_resolved(mode.status)
-        names = "growth_rate", "phase_speed", "error", *measured(self.flow)
+        slopes = ("group_speed", "group_error") if self._differentiated else ()
+        names = "growth_rate", "phase_speed", "error", *slopes, *measured(self.flow)
         numbers = {name: None if refused else getattr(mode, name) for name in names}
         return {"k": k, **numbers, resolution: getattr(mode, resolution, None),
                 "status": self._status(mode) if mode else self._lost(k)}
@@ -179,15 +200,15 @@ def dispersion_parts(flow: "Flow", k: "ArrayLike", mode: str | None = None, *, t
     check_flow(flow)
     wavenumbers = check_wavenumbers(k)
     mode = default_mode(flow) if mode is None else check_options("mode", mode, MODES)
-    tolerance, max_degree = check_accuracy(tolerance, max_degree)
+    accuracy = check_accuracy(tolerance, max_degree)
     walk = {"surface": _surface, "leading": _leading, "most-unstable": _most_unstable}[mode]
-    portions, step = walk(Solver(flow, tolerance, max_degree), np.unique(wavenumbers)), one_thread(next)
+    portions, step = walk(Solver(flow, accuracy), np.unique(wavenumbers)), one_thread(next)
     while portion := step(portions, None):
         found, lost, met = portion
         collisions = tuple(event for event in met if isinstance(event, Collision))
         encounters = tuple(event for event in met if isinstance(event, Encounter))
         yield DispersionRelation(flow, mode, tuple(found.values()), lost, collisions, encounters=encounters,
-                                 settings={"tolerance": tolerance, "max_degree": max_degree})
+                                 settings=accuracy.settings)
 
 
 def joined(parts: list[DispersionRelation], asked: list[float]) -> DispersionRelation:

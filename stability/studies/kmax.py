@@ -10,10 +10,11 @@ import numpy as np
 from ..checks import check_flag, check_options, check_range
 from ..errors import ModeLost, NotResolved, naming
 from ..flows.base import check_flow
+from ..modes.accuracy import DEGREES, TOLERANCE, check_accuracy
 from ..modes.crests import Maximum, crest, default_mode, look, may_grow, search_of, surface_look
 from ..modes.listing import listed
 from ..modes.short_waves import Strip, ill_posed_strips
-from ..modes.solver import DEGREES, TOLERANCE, Assembly, Solver, check_accuracy
+from ..modes.solver import Assembly, Solver
 from ..numerics.threads import one_thread
 from ..output.panels import (
     GROWTH_AT_K_MAX,
@@ -242,13 +243,13 @@ def k_max_sweep(flows: "Iterable[Flow]", search: tuple[float, float] | None = No
 
     Flows with the same equations share their matrices (dunes at different Re, say).
     """
-    tolerance, max_degree = check_accuracy(tolerance, max_degree)
+    accuracy = check_accuracy(tolerance, max_degree)
     search = None if search is None else check_range(search, "search")
     mode = None if mode is None else check_options("mode", mode, MODES)
     assembly = None
     for flow in flows:
         assembly = assembly.serving(flow) if assembly else Assembly(flow)
-        yield _optimum(Solver(flow, tolerance, max_degree, assembly), search, mode or default_mode(flow))
+        yield _optimum(Solver(flow, accuracy, assembly), search, mode or default_mode(flow))
 
 
 @one_thread
@@ -256,7 +257,7 @@ def _optimum(solver, search, mode):
     if mode == "surface" and not solver.flow.has_surface_mode():
         solver.flow.long_wave(1.0)  # says so
     low, high = search or search_of(solver.flow, mode)
-    settings = {"mode": mode, "tolerance": solver.tolerance, "max_degree": solver.degrees[-1]}
+    settings = {"mode": mode, **solver.accuracy.settings}
     if solver.flow.decays:
         return Optimum(solver.flow, (), _stable("leading", high), settings)
     try:

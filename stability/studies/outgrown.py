@@ -6,9 +6,10 @@ modes then grow ever faster with k, while the slow surface mode need not notice:
 
 from dataclasses import dataclass
 
+from ..modes.accuracy import DEGREES
 from ..modes.dense import finite_rates
 from ..modes.short_waves import ill_posed_somewhere, ill_posed_strips
-from ..modes.solver import DEGREES, Solver
+from ..modes.solver import Solver
 from ..numerics.threads import one_thread
 
 _CHECK_DEGREE = 16, 96  # least and largest of the look for a faster mode; between them that of the surface mode

@@ -22,7 +22,7 @@ def compute(piece, attempt=0):
 
 def _k_max_rows(piece):
     def sweep(flows):
-        return k_max_sweep(flows, tolerance=piece.tolerance, max_degree=piece.max_degree)
+        return k_max_sweep(flows, **piece.accuracy.settings)
 
     for found in _each(sweep, piece.flows):
         yield _nothing(piece, found) if isinstance(found, str) else _optimum_row(found)
@@ -40,8 +40,7 @@ def _optimum_row(optimum):
 def _growth_rate_rows(piece):
     def sweep(flows):
         for flow in flows:
-            yield dispersion(flow, piece.k, strict=False, rivals=True, tolerance=piece.tolerance,
-                             max_degree=piece.max_degree)
+            yield dispersion(flow, piece.k, strict=False, rivals=True, **piece.accuracy.settings)
 
     for found in _each(sweep, piece.flows):
         if isinstance(found, str):
@@ -62,7 +61,7 @@ def _relation_rows(piece, relation):
 
 def _neutral_rows(piece):
     def sweep(flows):
-        return critical_sweep(flows, piece.vary, tolerance=piece.tolerance, max_degree=piece.max_degree)
+        return critical_sweep(flows, piece.vary, **piece.accuracy.settings)
 
     for found in _each(sweep, piece.flows):
         if isinstance(found, str):

@@ -9,12 +9,13 @@ import numpy as np
 from ..checks import check_flag, check_integer, check_wavenumber
 from ..errors import NotResolved
 from ..flows.base import check_flow
+from ..modes.accuracy import DEGREES, TOLERANCE, Accuracy, check_accuracy
 from ..modes.eigenvalue import Eigenvalues
 from ..modes.energy import condition_numbers
 from ..modes.listing import listed
 from ..modes.mode import Mode, require
 from ..modes.short_waves import ill_posed_somewhere, ill_posed_strips
-from ..modes.solver import DEGREES, TOLERANCE, Solver, check_accuracy
+from ..modes.solver import Solver
 from ..numerics.threads import one_thread
 from ..output.panels import GROWTH_RATE, PHASE_SPEED, POINTS, Curve, Panel
 from ..output.record import Record
@@ -149,8 +150,7 @@ def spectrum(flow: "Flow", k: float, modes: int = 10, *, tolerance: float = TOLE
     """
     strict, rivals = check_flag("strict", strict), check_flag("rivals", rivals)
     k, modes = check_wavenumber(k), check_integer(modes, "modes", 1, MOST)
-    tolerance, max_degree = check_accuracy(tolerance, max_degree)
-    (found,) = spectra(check_flow(flow), [k], modes, tolerance=tolerance, max_degree=max_degree)
+    (found,) = spectra(check_flow(flow), [k], modes, check_accuracy(tolerance, max_degree))
     if strict:
         for mode in found.modes:
             require(mode)
@@ -159,17 +159,15 @@ def spectrum(flow: "Flow", k: float, modes: int = 10, *, tolerance: float = TOLE
     return replace(found, remarks=ill_posed_remarks([found], rivals))
 
 
-def spectra(flow: "Flow", wavenumbers: Sequence[float], modes: int, *, tolerance: float = TOLERANCE,
-            max_degree: int = DEGREES[-1]) -> Iterator[Spectrum]:
+def spectra(flow: "Flow", wavenumbers: Sequence[float], modes: int, accuracy: Accuracy) -> Iterator[Spectrum]:
     """Yield the `Spectrum` at each wavenumber, not strict and without remarks (`ill_posed_remarks`)."""
-    settings = {"tolerance": tolerance, "max_degree": max_degree}
     for k in wavenumbers:
-        yield _spectrum(Solver(flow, tolerance, max_degree), k, modes, settings)
+        yield _spectrum(Solver(flow, accuracy), k, modes)
 
 
 @one_thread
-def _spectrum(solver, k, count, settings):
+def _spectrum(solver, k, count):
     found = listed(solver, k, count)
     modes = found.modes[:count]
-    return Spectrum(solver.flow, k, modes, settings, found.status[:count],
+    return Spectrum(solver.flow, k, modes, solver.accuracy.settings, found.status[:count],
                     found.doubt if found.sure < count else None, tuple(condition_numbers(modes, solver).tolist()))

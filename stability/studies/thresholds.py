@@ -145,7 +145,7 @@ def _jacobian(plane, point):
 def zero_at(point, error, k_error, plane):
     """The `Zero` at a point, resolved where the error of its value is small."""
     status = point.mode.status
-    if is_resolved(status) and not error <= max(plane.tolerance, _VALUE_TOLERANCE) * abs(point.value):
+    if is_resolved(status) and not error <= max(plane.accuracy.tolerance, _VALUE_TOLERANCE) * abs(point.value):
         status = unresolved(f"error {error:.1e} of {plane.vary} exceeds tolerance")
     slope = point.by_value.real
     return Zero(point.k, point.value, point.mode, float(error), float(k_error), status, slope,

@@ -18,6 +18,7 @@ from stability.cli import main
 from stability.cli.verbs import VERBS
 
 FULL = "/dev/full"
+COLUMNS = ["k", "growth_rate", "phase_speed", "error", "group_speed", "group_error", "degree", "status"]
 SLOW = {"map", "compare", "explore"}  # verbs whose examples take long
 
 
@@ -36,7 +37,7 @@ def test_dispersion_as_json(capsys):
         "version": __version__}
     expected = dispersion(flows.Vortex(Fr2=0.2), [0.5, 2.0])
     assert [row["growth_rate"] for row in result["rows"]] == expected.growth_rate.tolist()  # floats round-trip
-    assert list(result["rows"][0]) == ["k", "growth_rate", "phase_speed", "error", "degree", "status"]
+    assert list(result["rows"][0]) == COLUMNS
 
 
 def test_csv_carries_the_parameters_in_comments(capsys):
@@ -51,7 +52,7 @@ def test_csv_carries_the_parameters_in_comments(capsys):
 
 def test_tables_are_aligned(capsys):
     _, out, _ = run(capsys, "dispersion", "dune", "--k", "1,10")
-    assert out.splitlines()[0].split() == ["k", "growth_rate", "phase_speed", "error", "degree", "status"]
+    assert out.splitlines()[0].split() == COLUMNS
     assert len({line.index("resolved") for line in out.splitlines()[1:]}) == 1
 
 

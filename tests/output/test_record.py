@@ -139,7 +139,8 @@ def test_what_cannot_be_written_says_so_and_leaves_nothing(tmp_path, record, for
 def test_repr_is_a_short_table():
     lines = repr(dispersion(BED, np.geomspace(0.01, 10, 200))).splitlines()
     assert lines[0] == f"DispersionRelation of {BED}, mode surface: 200 of 200 resolved"
-    assert lines[1].split() == ["k", "growth_rate", "phase_speed", "error", "degree", "status"]
+    assert lines[1].split() == ["k", "growth_rate", "phase_speed", "error", "group_speed", "group_error", "degree",
+                                             "status"]
     assert [line.split()[0] for line in lines[2:]] == ["0.01", "0.01035321843", "0.01071891319", "0.01109752496", "...",
                                                        "9.658832241", "10"]
 

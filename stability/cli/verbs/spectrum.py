@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from ...checks import check_integer
 from ...studies.spectrum import MOST, Spectra, ill_posed_remarks, spectra
-from ..common import accuracy_options, add_verb, collect, flow_of, k_option, options_of, report
+from ..common import accuracy_of, accuracy_options, add_verb, collect, flow_of, k_option, report
 from ..specs import parse_spec
 
 
@@ -19,12 +19,12 @@ def _modes_option(verb):
 
 
 def _run(arguments):
-    flow, options = flow_of(arguments), options_of(arguments)
+    flow, accuracy = flow_of(arguments), accuracy_of(arguments)
     count = check_integer(arguments.modes, "--modes", 1, MOST)
     wavenumbers = parse_spec(arguments.k, "--k")
 
     def compute():
-        parts = spectra(flow, wavenumbers.tolist(), count, **options)
+        parts = spectra(flow, wavenumbers.tolist(), count, accuracy)
         found = collect(arguments, parts, len(wavenumbers), lambda done: [])
         missing, remarks = wavenumbers.tolist()[len(found):], ill_posed_remarks(found)
         if len(wavenumbers) == 1:
