@@ -2,13 +2,14 @@
 
 The thesis's figures 2.3(b) (annular shear, rotation rate against thickness; lambda = 1.4), 2.4(c) (chute, flux), 2.8(b)
 (profiles under a dragged plate; lambda = 1.6) and 2.9(a) (its velocity). Saturating friction mu1 = 0.4, mu2 = lambda
-mu1, velocities in units of I0 as in the thesis. Leading terms (2.11), (2.22), (2.38) dashed; the computed curves leave
-them by the next orders that `asymptotics expand plate` and its like derive. Run time: about 3 s on one core.
+mu1, velocities in units of I0 as in the thesis. Leading terms (2.11), (2.22), (2.38) dashed; dotted the sums of three
+orders, which `asymptotics` derives from the steady equations. Run time: about 6 s on one core.
 """
 
 import numpy as np
 from style import BLUE, GREEN, GREY, RED, main, plt
 
+from asymptotics import expand
 from stability.errors import ParameterError
 from stability.flows import Annulus, Chute, Plate, Saturating
 from stability.studies.base import base_flow
@@ -18,6 +19,7 @@ COLOURS = (BLUE, GREEN, RED)
 GAMMA0 = (1.0, 5.0, 14.7)
 RATIOS = (1.5, 1.6, 1.8)
 PROFILES = (1.1, 1.2, 1.3)
+STYLES = {"law": "--", "three_orders": ":"}
 
 
 def law(ratio):
@@ -29,28 +31,38 @@ def approaching(limit, count):
     return limit * (1 - np.linspace(0.995, 0.1, count) ** 3)
 
 
+def series(flow, ratio, scale, **more):
+    """Leading term and sum of three orders in delta, divided by a scale: two functions."""
+    whole = expand(flow, mu1=MU1, mu2=ratio * MU1, I0=I0, **more)
+    return [lambda delta, one=one: float(one.function()(delta).real) / scale for one in (whole.truncated(2), whole)]
+
+
 def compute(fast):
-    columns = {name: [] for name in ("panel", "curve", "x", "y", "law")}
+    columns = {name: [] for name in ("panel", "curve", "x", "y", "law", "three_orders")}
 
-    def add(panel, curve, x, y, limit=np.nan):
-        for column, value in zip(columns.values(), (panel, curve, x, y, limit), strict=True):
-            column.append(float(value) if column is not columns["panel"] else value)
+    def add(panel, curve, x, y, *laws):
+        row = (panel, float(curve), float(x), float(y), *(laws or (np.nan, np.nan)))
+        for column, value in zip(columns.values(), row, strict=True):
+            column.append(value)
 
-    count = 12 if fast else 40
+    count = 12 if fast else 60
     for gamma0 in GAMMA0:
+        laws = series("annulus", 1.4, 1.0, gamma=gamma0 / I0)
         for delta in approaching(1.4**0.5 - 1, count):
             try:
                 rotation = Annulus(thickness=delta, gamma=gamma0 / I0, law=law(1.4)).rotation
             except ParameterError:
                 break
-            add("annulus", gamma0, rotation, delta, gamma0 * delta**2 / 0.4)
+            add("annulus", gamma0, rotation, delta, *(one(delta) for one in laws))
     for ratio in RATIOS:
+        laws = series("chute", ratio, I0 / MU1**0.5)
         for delta in approaching(1 - 1 / ratio, count):
             flux = Chute(plug=1 - delta, law=law(ratio)).flux * MU1**0.5 / I0
-            add("chute", ratio, flux, delta, delta**2 / (ratio - 1))
+            add("chute", ratio, flux, delta, *(one(delta) for one in laws))
+        laws = series("plate", ratio, I0)
         for delta in approaching(ratio - 1, count):
             speed = base_flow(Plate(shields=1 + delta, law=law(ratio)), 2).U[-1] / I0
-            add("plate", ratio, speed, 1 + delta, delta**2 / (2 * (ratio - 1)))
+            add("plate", ratio, speed, 1 + delta, *(one(delta) for one in laws))
     for shields in PROFILES:
         found = base_flow(Plate(shields=shields, law=law(1.6)))
         for speed, height in zip(found.U / I0, found.z, strict=True):
@@ -71,10 +83,12 @@ def draw(data):
             here = rows & (columns["curve"] == curve)
             axis.plot(columns["x"][here], columns["y"][here], color=colour, label=f"{symbol} = {curve:g}")
             if name != "profile":
-                axis.plot(columns["law"][here], columns["y"][here], "--", color=colour, linewidth=0.8)
+                for name_of, style in STYLES.items():
+                    axis.plot(columns[name_of][here], columns["y"][here], style, color=colour, linewidth=0.8)
         axis.set(xlabel=xlabel, ylabel=ylabel, xlim=(0, {"annulus": 1.0, "chute": 1.0, "plate": 1.5}.get(name)))
         axis.legend(fontsize=7, loc="lower right")
-    axes[0, 0].plot([], [], "--", color=GREY, linewidth=0.8, label="leading order")
+    for label, style in zip(("leading order", "three orders"), STYLES.values(), strict=True):
+        axes[0, 0].plot([], [], style, color=GREY, linewidth=0.8, label=label)
     axes[0, 0].legend(fontsize=7, loc="lower right")
     return figure
 

@@ -1,6 +1,7 @@
 """Multi-precision eigenvalues of dunes under any friction law, from the power series of the law itself.
 
-    dune(law, shields, Re, depth, k, guess, creep)    `law` is one of the functions below with its parameters
+    dune(law, shields, Re, depth, k, guess, creep)    `law` is one of the classes below with its parameters
+    plate(law, shields, inertia, k, guess, creep)     grains under a dragged plate
 
 A bed of pressure p = 1 - z obeys mu(I) p = tau, so that in x, the depth below some height, the functions of the
 equations are power series made of that of I(p): what the law contributes is `inertial`, the series of I about a given
@@ -9,7 +10,7 @@ pressure, and `slope`, that of mu'(I). Nothing is shared with the package: no ze
 With S = sigma + i k U, g = U' and p' = -1 (' = d/dz), small changes u, w of velocity, t and n of stress obey
 
     w' = -i k u,       u' = (t - alpha q)/beta - i k w,      q = -n - 2 i k (tau/g) u,
-    t' = S u + g w - i k n + 4 k^2 (tau/g) u,                n' = S w - i k t,
+    t' = rho (S u + g w) - i k n + 4 k^2 (tau/g) u,          n' = rho S w - i k t,
     beta = mu' sqrt(p),      alpha = tau/p - I mu'/2.
 
 With u = g v the first edge of a bed with a yield surface is a regular singular point, g = 0: series in y, the height
@@ -22,7 +23,7 @@ from functools import cache
 from operator import mul
 
 import mpmath as mp
-from references import Fixed, _det, _grains, _response, _root
+from references import Fixed, _response, _root
 
 _RATIO = mp.mpf("0.4")  # step over the radius of convergence, as far as that is estimated
 _SPARE = 160  # bits: inertial numbers of creeping grains fall to 1e-20, and slopes of friction rise as far
@@ -171,6 +172,24 @@ class Regularised:
 
 def dune(law, shields, Re, depth, k, guess, creep=None, digits=30, radius=1e-3):
     """The root next to `guess`; `law` is a class above and its parameters, as a tuple."""
+    wall = cache(lambda prec: _response(k, Re, depth))
+
+    def conditions(state, tau, speed, sigma):
+        v, w, t, n = state
+        q = -n - 2j * k * tau * v
+        return t + tau * wall(mp.mp.prec) * q, w - (sigma + 1j * k * speed) * q
+
+    return _root(_determinant(law, shields, creep, mp.mpf(k), 1, conditions), guess, digits, radius)
+
+
+def plate(law, shields, inertia, k, guess, creep=None, digits=30, radius=1e-3):
+    """The root next to `guess` of grains under a rigid plate: u = w = 0 there."""
+    return _root(_determinant(law, shields, creep, mp.mpf(k), mp.mpf(inertia), lambda state, *_: state[:2]), guess,
+                 digits, radius)
+
+
+def _determinant(law, shields, creep, k, rho, conditions):
+    """The determinant of two `conditions` on top of a bed, a function of sigma."""
     kind, *parameters = law
 
     @cache
@@ -178,15 +197,16 @@ def dune(law, shields, Re, depth, k, guess, creep=None, digits=30, radius=1e-3):
         """The law's part of the work, once for each precision."""
         made = kind(*parameters)
         tau = made.rest * mp.mpf(shields)
-        return made, tau, list(_steps(made, tau, creep and mp.mpf(creep))), _response(k, Re, depth)
+        return made, tau, list(_steps(made, tau, creep and mp.mpf(creep)))
 
     def determinant(sigma):
         with mp.extraprec(40):
-            made, tau, walk, R = steps(mp.mp.prec)
-            D = _bed(made, tau, walk, mp.mpf(k), sigma, R)
+            states, tau, speed = _climbed(*steps(mp.mp.prec), k, rho, sigma)
+            one, other = (conditions(state, tau, speed, sigma) for state in states)
+            D = one[0] * other[1] - one[1] * other[0]
         return D, mp.mag(D) - mp.mp.prec if D else -mp.mp.prec
 
-    return _root(determinant, guess, digits, radius)
+    return determinant
 
 
 def _steps(law, tau, creep):
@@ -204,19 +224,15 @@ def _steps(law, tau, creep):
             pressure -= step
 
 
-def _bed(law, tau, walk, k, sigma, R):
-    """Determinant of the conditions on the bed."""
+def _climbed(law, tau, walk, k, rho, sigma):
+    """The states (v, w, t, n) that two solutions have on top of a bed, its shear stress, and the velocity there."""
     start = (None, mp.mpf(0)) if law.yields else (mp.mpf(0), mp.mpf(0))
     states, speed = [(*start, mp.mpf(t), mp.mpf(n)) for t, n in ((1, 0), (0, 1))], mp.mpf(0)
     for number, (step, base) in enumerate(walk):
         singular = law.yields and not number
-        states = [_advance(base, tau, k, sigma, speed, state, step, singular) for state in states]
+        states = [_advance(base, tau, k, rho, sigma, speed, state, step, singular) for state in states]
         speed += mp.fsum(base[4].c)
-    rows = []
-    for v, w, t, n in states:
-        q = -n - 2j * k * tau * v
-        rows.append((t + tau * R * q, w - (sigma + 1j * k * speed) * q))
-    return rows[0][0] * rows[1][1] - rows[0][1] * rows[1][0]
+    return states, tau, speed
 
 
 def _bottom(law, tau, creep):
@@ -276,7 +292,7 @@ class _Column:
         return mp.mpc(*(mp.ldexp(sum(part), -self.bits) for part in (self.re, self.im)))
 
 
-def _advance(base, tau, k, sigma, speed, state, step, singular):
+def _advance(base, tau, k, rho, sigma, speed, state, step, singular):
     """The state (v, w, t, n) a step higher: u = g v."""
     bits = mp.mp.prec + 40
 
@@ -294,13 +310,14 @@ def _advance(base, tau, k, sigma, speed, state, step, singular):
     gv = _Column(0, bits)
     gv.re, gv.im = [], []
     g_, dg_, loss_, press_, U_ = (one[::-1] for one in (g, dg, loss, press, U))
-    ik, twist, rate, drag, h = map(fixed, (1j * k * step, 2j * k * tau, (sigma + 1j * k * speed) * step,
-                                           4 * k**2 * tau * step, step))
+    ik, twist, rate, drag, h, wave = map(fixed, (
+        1j * k * step, 2j * k * tau, rho * (sigma + 1j * k * speed) * step, 4 * k**2 * tau * step, rho * step,
+        1j * k * rho * step))
     for j in range(terms - 2):
         gv.append(v.times(g_, j))
         u, lift, slip = gv.last(), w.times(g_, j), v.last()
-        Su = rate * u + ik * gv.times(U_, j)
-        Sw = rate * w.last() + ik * w.times(U_, j)
+        Su = rate * u + wave * gv.times(U_, j)
+        Sw = rate * w.last() + wave * w.times(U_, j)
         old_t, old_n, old_w = t.last(), n.last(), w.last()
         if not singular:
             known = t.times(loss_, j) + n.times(press_, j) + twist * v.times(press_, j) - ik * old_w
@@ -324,19 +341,3 @@ def _slopes(v, g_, m):
     part = g_[start:start + len(v.re) - 1]
     return Fixed(*(sum(map(mul, part, [i * x for i, x in enumerate(side)][1:])) >> v.bits for side in (v.re, v.im)),
                  v.bits)
-
-
-def rollwave(law, slope_deg, Fr2, k, guess, digits=30, radius=1e-3):
-    """Roll waves under a law: `references.rollwave` with e = I mu'(I) at mu = tan(slope) from the law."""
-    kind, *parameters = law
-
-    def determinant(sigma):
-        made, k_, F, angle = kind(*parameters), mp.mpf(k), mp.mpf(Fr2), mp.tan(mp.radians(mp.mpf(slope_deg)))
-        mu = Series.of([angle])
-        mu.slow = any(angle < one for one in made.breaks)
-        e = (made.inertial(mu) * made.slope(mu)).c[0]
-        first, error1 = _grains(sigma, k_, F, angle, e, (0, sigma + 2j * k_ / 3, angle, -1))
-        second, error2 = _grains(sigma, k_, F, angle, e, (1, 0, 0, 0))
-        return _det(first, error1, second, error2)
-
-    return _root(determinant, guess, digits, radius)

@@ -147,3 +147,35 @@ def test_no_file_and_no_function_is_long(package):
     ("class A:\n    async def long(self):\n" + "        x = 1\n" * BODY, {"long"})])
 def test_what_is_long_is_seen(source, names):
     assert set(too_long(source)) == names
+
+
+FOREIGN = {  # private names of argparse, matplotlib's sliders, scipy's netCDF and sympy: they offer no public ones
+    "_SubParsersAction", "_actions", "_check_value", "_group_actions", "_option_string_actions", "_subparsers",
+    "_handle", "_Encoding", "_attributes", "_to_mpmath", "_exit"}
+
+
+def private(source):
+    """Private names of others that a file uses: imported, or taken from anything but what it defines itself."""
+    tree = ast.parse(source)
+    found = {alias.name for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) for alias in node.names}
+    for node in ast.walk(tree):
+        own = isinstance(node, ast.Attribute) and ast.unparse(node.value) in ("self", "cls", "super()")
+        if isinstance(node, ast.Attribute) and not own:
+            found.add(node.attr)
+    own = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store)}
+    own |= {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}
+    return {name for name in found if name.startswith("_") and not name.startswith("__")} - own - FOREIGN
+
+
+@pytest.mark.parametrize("package", ["stability", "asymptotics"])
+def test_no_file_needs_the_private_names_of_another(package):
+    used = {str(file.relative_to(ROOT)): private(file.read_text()) for file in (ROOT / package).rglob("*.py")}
+    assert not {name: found for name, found in used.items() if found}
+
+
+@pytest.mark.parametrize(("source", "names"), [
+    ("from .a import _b", {"_b"}), ("from . import a\nx = a._b", {"_b"}), ("x = y.z()._b", {"_b"}),
+    ("from .a import __version__, b", set()), ("class A:\n    def f(self):\n        return self._b", set()),
+    ("class A:\n    def __init__(self):\n        self._b = 1\n\n    def f(self, it):\n        return it._b", set())])
+def test_a_private_name_is_seen(source, names):
+    assert private(source) == names

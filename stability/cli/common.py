@@ -11,10 +11,10 @@ from ..errors import ParameterError
 from ..flows import find
 from ..flows.base import allowed, check_flow, numeric
 from ..flows.catalogue import nearest
-from ..modes.solver import DEGREES, TOLERANCE, check_accuracy
+from ..modes.accuracy import DEGREES, TOLERANCE, check_accuracy
 from ..output.columns import explained
 from ..output.text import check_writable, render, whole_file, write
-from ..status import INTERRUPTED, is_settled
+from ..status import is_interrupted, is_settled
 from .names import FLOW, flag_of
 from .plotting import look_of, plot_options
 from .progress import Bar
@@ -175,9 +175,14 @@ def swept_values(text, flow, option="--over"):
     return name, parse_spec(spec, f"{option} {name}", False, item.metadata["unbounded"]).tolist()
 
 
+def accuracy_of(arguments):
+    """The accuracy asked for by `accuracy_options`."""
+    return check_accuracy(arguments.tolerance, arguments.max_degree, ("--tolerance", "--max-degree"))
+
+
 def options_of(arguments):
-    tolerance, max_degree = check_accuracy(arguments.tolerance, arguments.max_degree, ("--tolerance", "--max-degree"))
-    return {"tolerance": tolerance, "max_degree": max_degree}
+    """The same as keyword arguments."""
+    return accuracy_of(arguments).settings
 
 
 def report(arguments, compute):
@@ -185,8 +190,8 @@ def report(arguments, compute):
     form = check_files(arguments)
     result = compute()
     rows, header = result.rows(), result.header()
-    missing = [row for row in rows if row["status"] == INTERRUPTED]
-    failed = [row for row in rows if not is_settled(row["status"]) and row["status"] != INTERRUPTED]
+    missing = [row for row in rows if is_interrupted(row["status"])]
+    failed = [row for row in rows if not is_settled(row["status"]) and not is_interrupted(row["status"])]
     if not arguments.quiet:
         for note in _radians(arguments):
             say(f"stability: {note}")

@@ -24,6 +24,7 @@ from numpy.polynomial import chebyshev as C
 from ..equations.layer import FIELDS, Layer, Profile
 from ..errors import ParameterError
 from ..numerics.smooth import Rough, fit
+from .base import parameter
 from .law import Law
 
 _REST = 1e-8  # inertial number at which friction of a law with a yield stress is to rise linearly
@@ -46,15 +47,21 @@ class Sinking:
 
     def at(self, law: Law, tau: float, s: Any) -> tuple[Any, Any, Any]:
         """zeta, I and -dzeta/ds at the points s."""
-        top = law.range[1]
-        if np.isfinite(top):
-            gap = self.zeta - np.sqrt(tau / top)
-            rate = np.log1p(-self.span / gap)
-            fall, stretch = -gap * np.expm1(rate * s), -gap * rate * np.exp(rate * s)
-        else:
-            fall, stretch = self.span * s, self.span + 0 * s
-        zeta, depth = self.zeta - fall, self.depth + fall
-        return zeta, law.beyond(law.start * depth * (2 * zeta + depth) / zeta**2), stretch
+        top, span = law.range[1], self.span
+        if not np.isfinite(top):
+            zeta, depth = self.zeta - span * s, self.depth + span * s
+            return zeta, law.beyond(self._excess(law, zeta, depth)), span + 0 * s
+        pole = np.sqrt(tau / top)
+        gap = self.zeta - pole
+        rate = np.log1p(-span / gap)
+        left = gap * np.exp(rate * s)  # zeta - a
+        zeta, depth = pole + left, self.depth - gap * np.expm1(rate * s)
+        lack = top * left * (zeta + pole) / zeta**2
+        return zeta, law.between(self._excess(law, zeta, depth), lack), -rate * left
+
+    def _excess(self, law, zeta, depth):
+        """Friction over that at rest."""
+        return law.start * depth * (2 * zeta + depth) / zeta**2
 
 
 @dataclass(frozen=True)
@@ -191,6 +198,13 @@ def below(edges: Any, count: int, yields: bool) -> tuple:
     return (*([] if yields else [bottom.v]), bottom.w, *joints)
 
 
+def creep_parameter(law: type[Law], floor: str = "floor of the bed", surface: str = "interface") -> dict[str, Any]:
+    """The parameter that says where a rigid floor holds grains under a law without yield stress, {} for others."""
+    return {} if law.yields else {"creep": parameter(
+        1e-6, 1e-9, 0.5, look=(1e-8, 1e-2), reason="the floor must hold the grains, and rounding leaves it no more",
+        meaning=f"shear rate at the rigid {floor} over that at the {surface}; the law has no yield stress")}
+
+
 def flux_slopes(law: Law, shields: float, creep: float) -> tuple[float, float]:
     """Return dQ/d(shields) of the flux Q of grains, and dQ/dh, of the height h of the bed over a rigid floor.
 
@@ -226,7 +240,7 @@ def check(law: Law, name: str, shields: float) -> None:
     tau = law.rest * shields
     if not low < tau < high:
         raise ParameterError(f"{name}: shields must lie in (1, {high / law.rest:.6g}): friction of law {law.name} "
-                             f"cannot exceed {high:g}, no steady flow beyond (got {shields:g})")
+                             f"cannot exceed {high:g}, no steady flow beyond; give a smaller one (got {shields:g})")
     if low > 0:
         slopes = [float(law.slope(one)) for one in (_REST, 2 * _REST)]
         if not (slopes[0] > 0 and abs(slopes[1] / slopes[0] - 1) < _LINEAR):

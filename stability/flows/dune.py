@@ -58,9 +58,7 @@ class Dune(Granular):
 
     @classmethod
     def extras(cls, law: type[Law]):
-        return {} if law.yields else {"creep": parameter(
-            1e-6, 1e-9, 0.5, look=(1e-8, 1e-2), reason="the floor must hold the bed, and rounding leaves it no more",
-            meaning="shear rate at the rigid floor of the bed over that at the interface; the law has no yield stress")}
+        return beds.creep_parameter(law)
 
     @property
     def functions(self):  # type: ignore[override]

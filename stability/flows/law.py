@@ -113,6 +113,10 @@ class Law:
             found = np.where(np.abs(step) < found / 2, found - step, found)
         return np.where(excess > 0, found, 0.0)
 
+    def between(self, excess: Any, lack: Any) -> Any:
+        """The same where friction lacks `lack` of its largest value: near that, an excess alone has few digits."""
+        return self.beyond(excess)
+
     def check(self, mu: Any) -> None:
         """Raise ParameterError where there is no inertial number at which friction is mu."""
         low, high = self.range
@@ -137,9 +141,12 @@ def _verified(law):
     given = type(law).slope is not Law.slope
     remedy = "" if given else "; give slope(I), or write mu(I) so that it takes complex numbers"
     _compare(law, "slope(I)", law.slope(_LOOK), difference, _ALIKE * np.abs(difference) + noise, smooth, remedy)
+    room = 1e-9 * _LOOK + 1e-14 * mu / np.abs(difference)
     if type(law).inverse is not Law.inverse or type(law).beyond is not Law.beyond:
-        room = 1e-9 * _LOOK + 1e-14 * mu / np.abs(difference)
         _compare(law, "inverse(mu)", law.inverse(mu), _LOOK, room, smooth, "")
+    if type(law).between is not Law.between:
+        found = law.between(mu - law.start, law.range[1] - mu)
+        _compare(law, "between(excess, lack)", found, _LOOK, room, smooth, "")
 
 
 def _compare(law, what, value, expected, room, where, remedy):

@@ -93,7 +93,10 @@ class Saturating(Law):
         return self.I0 * (mu - self.mu1) / (self.mu2 - mu)
 
     def beyond(self, excess):
-        return self.I0 * excess / (self.mu2 - self.mu1 - excess)
+        return self.between(excess, self.mu2 - self.mu1 - excess)
+
+    def between(self, excess, lack):
+        return self.I0 * excess / lack
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ import numpy as np
 from ..equations.layer import numbers
 from ..errors import ModeLost
 from ..numerics import chebyshev
-from ..status import is_resolved
+from ..status import Status, is_resolved, unresolved
 from .branch import surface_branch
 from .listing import near_neutral, same
 from .memory import branch_of
@@ -61,7 +61,7 @@ class Maximum:
     k: float
     error: float
     mode: Any
-    status: str
+    status: Status
     data_error: float | None = None  # standard error of k from that of a measured base flow
 
     @property
@@ -288,7 +288,7 @@ def crest(solver, left, right):
     error = float((abs(now.slope.real) + noise) / abs(curvature))
     status = now.status
     if is_resolved(status) and not error <= max(solver.tolerance, _K_TOLERANCE) * now.k:
-        status = f"error {error:.1e} of k_max exceeds tolerance"
+        status = unresolved(f"error {error:.1e} of k_max exceeds tolerance")
     measured = error_of_maximum(solver, now) if now.growth_rate > 0 else None
     return Maximum(now.k, error, now, status, measured)
 

@@ -4,20 +4,16 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from ..checks import check_integer, check_tolerance
 from ..equations.pencil import Layout, Pencil, Weights, weights_of
 from ..equations.system import System
 from ..equations.table import Table
 from ..flows.base import check_flow
 from ..numerics.refine import VECTOR, refine, refine_many
-from ..status import RESOLVED
+from ..status import RESOLVED, unresolved
+from .accuracy import TOLERANCE, Accuracy
 from .cutoff import neglected
 from .mode import Mode
 from .response import data_error, spread_of
-
-DEGREES = (8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 128, 160, 192, 256, 320,
-           384, 512)
-TOLERANCE = 1e-10  # default bound on error / |sigma| for a resolved mode
 
 _FAR_BELOW = 1e-15  # relative truncation error that is aimed at with the default tolerance
 _VECTOR = 0.01  # error of vectors without bars, in units of the tolerance
@@ -92,13 +88,13 @@ class Solver:
     truncation alone.
     """
 
-    def __init__(self, flow, tolerance=TOLERANCE, max_degree=DEGREES[-1], assembly=None, bars=True):
+    def __init__(self, flow, accuracy=Accuracy(), assembly=None, bars=True):  # noqa: B008 - a value that never changes
         self.flow = check_flow(flow)
         self.bars = bars
-        self.tolerance = tolerance
+        self.accuracy, self.tolerance = accuracy, (tolerance := accuracy.tolerance)
         self.truncation = 0.5 * tolerance if tolerance > TOLERANCE else min(0.5 * tolerance, _FAR_BELOW)
         self.vectors = VECTOR if bars else max(VECTOR, _VECTOR * tolerance)
-        self.degrees = tuple(d for d in DEGREES if d <= max_degree) or (max_degree,)
+        self.degrees = accuracy.degrees
         self.assembly = assembly or Assembly(flow)
         self.pencil = self.assembly.pencil
         self._known = {}
@@ -112,7 +108,7 @@ class Solver:
     @cached_property
     def _halves(self):
         parts = self.flow.halves()
-        return () if parts == (self.flow,) else tuple(Solver(half, self.tolerance, self.degrees[-1], bars=self.bars)
+        return () if parts == (self.flow,) else tuple(Solver(half, self.accuracy, bars=self.bars)
                                                       for half in parts)
 
     def prepare(self, k):
@@ -156,7 +152,7 @@ class Solver:
 
     def rough(self, tolerance):
         """Return a solver of the same equations, no more accurate than this and without bars."""
-        rough = Solver(self.flow, max(self.tolerance, tolerance), self.degrees[-1], self.assembly, bars=False)
+        rough = Solver(self.flow, self.accuracy.rougher(tolerance), self.assembly, bars=False)
         rough._known = self._known
         return rough
 
@@ -240,7 +236,7 @@ class Solver:
         error = truncation + rounding + lacking
         status = RESOLVED
         if not error <= self.tolerance * abs(sigma):  # nor where it is not a number
-            status = f"error {error:.1e} exceeds tolerance at degree {degree}"
+            status = unresolved(f"error {error:.1e} exceeds tolerance at degree {degree}")
         slope = width * eigen.slope + (1 + self.flow.order) * sigma / k
         return Mode(self.flow, float(k), complex(sigma), float(error), complex(slope), degree, status,
                     float(truncation), float(rounding), eigen.rate, eigen.slope, eigen.x, eigen.y,
@@ -252,11 +248,6 @@ class Solver:
             return None
 
         return data_error(self, k, degree, eigen)
-
-
-def check_accuracy(tolerance, max_degree, names=("tolerance", "max_degree")):
-    """Return both as numbers, or raise a ParameterError that uses these names."""
-    return check_tolerance(tolerance, names[0]), check_integer(max_degree, names[1], DEGREES[0], DEGREES[-1])
 
 
 def transfer(solver, vectors, degree):

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import ParameterError
+from ..status import Status
 from .spacing import is_logarithmic, spans_decades
 
 LINE, MARKED, POINTS = "line", "marked", "points"  # a line, one with dots, dots alone
@@ -44,7 +45,7 @@ class Curve:
     x_error: np.ndarray | None = None
     y_error: np.ndarray | None = None
     of: int | None = None
-    status: tuple[str, ...] | None = None
+    status: tuple[Status, ...] | None = None
     fade: float = 1.0
 
 

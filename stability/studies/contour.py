@@ -5,11 +5,12 @@ from math import exp
 import numpy as np
 
 from ..errors import ModeLost, ParameterError
+from ..numerics.walker import Pace, Walker
 
 _ROUGH = 1e-5  # tolerance of the arclength continuation
 _ITERATIONS = 20
 _LARGEST = 0.4  # step of Newton in log k, and relative in the parameter
-_ARC = 0.02, 0.25  # first and largest step along the curve, in log k and log value
+_PACE = Pace(0.02, 0.25, 1e-5, 2.0)  # along the curve, in log k and log value
 _TURN = 0.15  # angle between neighbouring tangents at which the step is kept
 _POINTS = 400
 _MARGIN = 1.15  # factor in k beyond the range asked for within which the curve may turn back
@@ -33,32 +34,54 @@ def trace(land, zero, low, high):
 def _walk(plane, start, side, low, high, span):
     """Follow the curve by arclength until it leaves low <= k <= high or the span, or as far as the mode can be
     followed."""
-    points, step = [_project(plane, start)], _ARC[0]
-    tangent = _tangent(points[0])
-    tangent = side * tangent * np.sign(tangent[0])
-    while len(points) < _POINTS:
-        now = points[-1]
-        ahead = now.k * exp(step * tangent[0]), now.value * exp(step * tangent[1])
-        try:
-            new = _project(plane, plane.move(now, *ahead))
-        except (ModeLost, ParameterError):
-            new = None
-        turn = np.inf
-        if new is not None:
-            direction = _tangent(new)
-            direction = direction if direction @ tangent > 0 else -direction
-            turn = np.arccos(min(1.0, direction @ tangent))
-        if turn > 2 * _TURN:
-            step /= 2
-            if step < 1e-5:
-                break
+    walk = _Contour(plane, _project(plane, start), side)
+    while len(walk.points) < _POINTS and not walk.stuck:
+        if not walk.stride(walk.step, walk.step):
             continue
-        points.append(new)
-        tangent, step = direction, min(_ARC[1], step * min(2.0, _TURN / max(turn, 1e-9)))
-        leaving = new.k * _MARGIN < low and tangent[0] < 0 or new.k > high * _MARGIN and tangent[0] > 0
+        new = walk.points[-1]
+        leaving = new.k * _MARGIN < low and walk.tangent[0] < 0 or new.k > high * _MARGIN and walk.tangent[0] > 0
         if leaving or not span[0] <= new.value <= span[1]:
             break
-    return points
+    return walk.points
+
+
+class _Contour(Walker):
+    """The line of zero growth followed by arclength in (log k, log value)."""
+
+    checks = ("turns_little",)
+    failures = (ModeLost, ParameterError)
+
+    def __init__(self, plane, start, side):
+        super().__init__(_PACE)
+        self.plane, self.points = plane, [start]
+        tangent = _tangent(start)
+        self.tangent = side * tangent * np.sign(tangent[0])
+
+    def foresee(self, to):
+        now = self.points[-1]
+        return now.k * exp(to * self.tangent[0]), now.value * exp(to * self.tangent[1])
+
+    def correct(self, to, guess):
+        return _project(self.plane, self.plane.move(self.points[-1], *guess))
+
+    def turns_little(self, new, guess):
+        return self._turn(new) <= 2 * _TURN
+
+    def factor(self, new, guess):
+        return min(2.0, _TURN / max(self._turn(new), 1e-9))
+
+    def accept(self, to, new):
+        self.points.append(new)
+        self.tangent = self._ahead(new)
+
+    def _ahead(self, new):
+        """The tangent at a point, in the direction of the walk."""
+        direction = _tangent(new)
+        return direction if direction @ self.tangent > 0 else -direction
+
+    def _turn(self, new):
+        """The angle between the tangents here and at a point."""
+        return np.arccos(min(1.0, self._ahead(new) @ self.tangent))
 
 
 def _scaled_gradient(point):
@@ -78,7 +101,7 @@ def _project(plane, point):
         step = -point.growth * gradient / (gradient @ gradient)
         if np.hypot(*step) > _LARGEST:
             raise ModeLost("the neutral curve is not near")
-        if np.hypot(*step) < 1e-3 * _ARC[0]:
+        if np.hypot(*step) < 1e-3 * _PACE.first:
             return point
         point = plane.move(point, point.k * exp(step[0]), point.value * exp(step[1]))
     raise ModeLost("the neutral curve is not near")

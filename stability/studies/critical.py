@@ -13,13 +13,13 @@ import numpy as np
 from ..checks import check_flag, check_range
 from ..errors import NotResolved, naming
 from ..flows.base import check_flow, check_parameter_name, span_of
-from ..modes.solver import DEGREES, TOLERANCE, check_accuracy
+from ..modes.accuracy import DEGREES, TOLERANCE, check_accuracy
 from ..numerics.threads import one_thread
 from ..output.panels import OTHERS, POINTS, WAVENUMBER, Axis, Curve, Panel, scale_of, swept_curves
 from ..output.record import Record
 from ..output.symbols import axis_label, symbol_of, value_text
 from ..output.text import Row, measured
-from ..status import inside, is_resolved
+from ..status import Status, inside, is_resolved, unresolved
 from .ridges import Landscape
 from .thresholds import critical_zeros
 
@@ -76,7 +76,7 @@ class NeutralPoint(ZeroGrowth):
     phase_speed: float | None
     error: float | None
     k_error: float | None
-    status: str
+    status: Status
     settings: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
     others: "tuple[NeutralPoint, ...]" = field(default=(), repr=False)
     remark: str | None = field(default=None, repr=False)
@@ -194,16 +194,16 @@ def critical_sweep(flows: "Iterable[Flow]", vary: str, *, span: tuple[float, flo
                    search: tuple[float, float] | None = None, long_wave: bool = False, tolerance: float = TOLERANCE,
                    max_degree: int = DEGREES[-1]) -> Iterator[NeutralPoint]:
     """Yield `critical` of each flow in turn; what failed is in its status."""
-    tolerance, max_degree = check_accuracy(tolerance, max_degree)
+    accuracy = check_accuracy(tolerance, max_degree)
     for flow in flows:
-        yield _critical(landscape_of(flow, vary, span, search, tolerance, max_degree), long_wave)
+        yield _critical(landscape_of(flow, vary, span, search, accuracy), long_wave)
 
 
-def landscape_of(flow, vary, span, search, tolerance, max_degree):
+def landscape_of(flow, vary, span, search, accuracy):
     check_parameter_name(flow, vary)
     span = span_of(flow, vary) if span is None else check_range(span, "span")
     search = None if search is None else check_range(search, "search")
-    return Landscape(flow, vary, span, search, tolerance, max_degree)
+    return Landscape(flow, vary, span, search, accuracy)
 
 
 @one_thread
@@ -221,10 +221,8 @@ def _critical(land, long_wave):
 
 def settings_of(land):
     """What a result depends on besides flow and parameter."""
-    plane = land.planes[0]
     return {"range": f"{land.span[0]:g} .. {land.span[1]:g}", "search": f"{land.search[0]:g} .. {land.search[1]:g}",
-            "tolerance": plane.tolerance,
-            "max_degree": plane.max_degree}
+            **land.planes[0].accuracy.settings}
 
 
 def point_of(land, zero, settings):
@@ -234,4 +232,4 @@ def point_of(land, zero, settings):
 
 
 def no_point(flow, vary, k, why):
-    return NeutralPoint(flow, vary, k, None, None, None, None, why)
+    return NeutralPoint(flow, vary, k, None, None, None, None, unresolved(why))

@@ -13,7 +13,7 @@ import numpy as np
 from .. import status
 from ..checks import check_file_name, check_integer, check_options, shown
 from ..errors import ParameterError
-from ..modes.solver import DEGREES, TOLERANCE
+from ..modes.accuracy import DEGREES, TOLERANCE, check_accuracy
 from ..output.panels import GROWTH_AT_K_MAX, GROWTH_RATE, K_MAX, PHASE_SPEED, WAVENUMBER, Axis, Grid
 from ..output.record import Record
 from ..output.symbols import axis_label, symbol_of
@@ -125,7 +125,7 @@ class Map(Record):
     def settings(self) -> dict[str, Any]:  # type: ignore[override]
         request = self.request
         mode = {"mode": default_mode(self.flow)} if self.quantity == "growth_rate" else {}
-        return {**mode, "tolerance": float(request.tolerance), "max_degree": request.max_degree}
+        return {**mode, **request.accuracy.settings}
 
     def panels(self) -> tuple[Grid, ...]:
         """The two results that are drawn unless told otherwise."""
@@ -198,7 +198,7 @@ def parameter_map(flow: "Flow", over: "Mapping[str, ArrayLike]", quantity: str |
     values, wavenumbers that do not fit together) and WorkersLost where processes end again and again.
     """
     quantity = usual_quantity(k, vary) if quantity is None else quantity
-    request = Request(flow, over, quantity, k, vary, tolerance, max_degree)
+    request = Request(flow, over, quantity, k, vary, check_accuracy(tolerance, max_degree))
     return carry_out(request, executor=executor, workers=workers, journal=journal, report=report)
 
 
@@ -219,7 +219,7 @@ def carry_out(request, *, executor=None, workers=1, journal=None, report=None):
                 done[piece.index] = rows
                 count += piece.points
                 report(count, request.size)
-    table = tuple(tuple(row) for piece in pieces for row in done[piece.index])
+    table = tuple((*row[:-1], status.read(row[-1])) for piece in pieces for row in done[piece.index])
     return Map(request, table, kept.damaged if kept else 0)
 
 

@@ -13,11 +13,11 @@ import numpy as np
 from ..checks import check_wavenumbers
 from ..errors import ModeLost, ParameterError
 from ..flows.base import check_flow
-from ..modes.solver import DEGREES, TOLERANCE, check_accuracy
+from ..modes.accuracy import DEGREES, TOLERANCE, check_accuracy
 from ..numerics.threads import one_thread
 from ..output.panels import DOTS, PHASE_SPEED, POINTS, WAVENUMBER, Curve, Panel, scale_found, scale_of
 from ..output.text import Row
-from ..status import is_resolved
+from ..status import is_resolved, unresolved
 from .contour import passes, trace
 from .critical import NeutralPoint, ZeroGrowth, landscape_of, no_point, point_of, settings_of, value_axis
 from .crossings import zeros_at
@@ -90,8 +90,7 @@ def neutral_parts(flow: "Flow", vary: str, k: "ArrayLike", *, span: tuple[float,
                   tolerance: float = TOLERANCE, max_degree: int = DEGREES[-1]) -> Iterator[NeutralCurve]:
     """Yield the curve of `neutral_curve` with the points of one wavenumber at a time: `joined` puts them together."""
     wavenumbers = check_wavenumbers(k)
-    tolerance, max_degree = check_accuracy(tolerance, max_degree)
-    land = landscape_of(check_flow(flow), vary, span, None, tolerance, max_degree)
+    land = landscape_of(check_flow(flow), vary, span, None, check_accuracy(tolerance, max_degree))
     settings = {name: value for name, value in settings_of(land).items() if name != "search"}
     drawn = np.empty((0, 2))
     for wavenumber in wavenumbers.tolist():
@@ -114,7 +113,7 @@ def _at_wavenumber(land, k, settings, drawn, low, high):
     if trouble:
         value, reason = next(iter(trouble.items()))
         doubt = f"others may be missing: at {land.vary} = {value:.4g}, {reason}"
-        points = [replace(point, status=doubt) if is_resolved(point.status) else point for point in points]
+        points = [replace(point, status=unresolved(doubt)) if is_resolved(point.status) else point for point in points]
     if not points:
         kind = "a mode grows" if grows == {True} else "all modes decay"
         why = f"the neutral curve does not reach k = {k:g}: {kind} at every {land.vary} from {land.span[0]:g} to " \

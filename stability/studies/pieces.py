@@ -9,7 +9,6 @@ from ..modes.memory import apart
 from .critical import critical_sweep
 from .dispersion import dispersion
 from .kmax import k_max_sweep
-from .outgrown import outgrown
 
 
 def compute(piece, attempt=0):
@@ -23,7 +22,7 @@ def compute(piece, attempt=0):
 
 def _k_max_rows(piece):
     def sweep(flows):
-        return k_max_sweep(flows, tolerance=piece.tolerance, max_degree=piece.max_degree)
+        return k_max_sweep(flows, **piece.accuracy.settings)
 
     for found in _each(sweep, piece.flows):
         yield _nothing(piece, found) if isinstance(found, str) else _optimum_row(found)
@@ -41,7 +40,7 @@ def _optimum_row(optimum):
 def _growth_rate_rows(piece):
     def sweep(flows):
         for flow in flows:
-            yield dispersion(flow, piece.k, strict=False, tolerance=piece.tolerance, max_degree=piece.max_degree)
+            yield dispersion(flow, piece.k, strict=False, rivals=True, **piece.accuracy.settings)
 
     for found in _each(sweep, piece.flows):
         if isinstance(found, str):
@@ -51,20 +50,18 @@ def _growth_rate_rows(piece):
 
 
 def _relation_rows(piece, relation):
-    modes = {mode.k: mode for mode in relation.modes}
-    faster = outgrown(relation)
+    modes = {mode.k: (mode, state) for mode, state in zip(relation.modes, relation.status, strict=True)}
     for k in piece.k:
         if k not in modes:
-            yield _nothing(piece, f"lost: {relation.lost[k]}")
+            yield _nothing(piece, status.Status(status.Kind.LOST, relation.lost[k]))
             continue
-        mode = modes[k]
-        state = status.outgrown(mode.status) if faster and k >= faster.k else mode.status
+        mode, state = modes[k]
         yield mode.growth_rate, mode.phase_speed, mode.error, *_data_error(relation.flow, mode), mode.degree, state
 
 
 def _neutral_rows(piece):
     def sweep(flows):
-        return critical_sweep(flows, piece.vary, tolerance=piece.tolerance, max_degree=piece.max_degree)
+        return critical_sweep(flows, piece.vary, **piece.accuracy.settings)
 
     for found in _each(sweep, piece.flows):
         if isinstance(found, str):
@@ -79,7 +76,7 @@ def _data_error(flow, result):
 
 
 def _nothing(piece, why):
-    return *[None] * (piece.width - 1), why
+    return *[None] * (piece.width - 1), status.read(why)
 
 
 def _each(sweep, flows):

@@ -16,7 +16,7 @@ from ..checks import check_options, check_wavenumbers, flat, shown
 from ..errors import ParameterError
 from ..flows.base import check_flow, check_parameter, check_parameter_name
 from ..flows.sources import origin
-from ..modes.solver import DEGREES, TOLERANCE, check_accuracy
+from ..modes.accuracy import Accuracy
 from ..output.text import measured
 
 QUANTITIES = ("k_max", "growth_rate", "neutral")
@@ -42,14 +42,11 @@ class Request:
     quantity: str
     k: Any = None
     vary: str | None = None
-    tolerance: float = TOLERANCE
-    max_degree: int = DEGREES[-1]
+    accuracy: Accuracy = Accuracy()
 
     def __post_init__(self):
         check_flow(self.flow)
         self._set(quantity=check_options("quantity", self.quantity, QUANTITIES))
-        tolerance, max_degree = check_accuracy(self.tolerance, self.max_degree)
-        self._set(tolerance=tolerance, max_degree=max_degree)
         if not isinstance(self.over, Mapping):
             raise ParameterError(f"over must be a dict {{parameter: values}} (got {shown(self.over)})")
         if not 1 <= len(self.over) <= _MOST_AXES:
@@ -113,7 +110,7 @@ class Request:
                      for first in range(0, len(inner), _PIECE[self.quantity])]
         names = (*(outer_name for outer_name, _ in outer), name)
         return tuple(Piece(index, self.quantity, tuple(self._at(names, (*line, value)) for value in stretch), self.k,
-                           self.vary, self.tolerance, self.max_degree, len(self.results))
+                           self.vary, self.accuracy, len(self.results))
                      for index, (line, stretch) in enumerate(product(lines, stretches)))
 
     def _at(self, names, values):
@@ -130,8 +127,8 @@ class Request:
         fixed = {name: value for name, value in self.flow.stated().items() if name not in self.over}
         return {"version": __version__, "flow": self.flow.name, **origin(type(self.flow)), "parameters": fixed,
                 "over": [[name, list(values)] for name, values in self.over.items()], "quantity": self.quantity,
-                "k": self.k and list(self.k), "vary": self.vary, "tolerance": self.tolerance,
-                "max_degree": self.max_degree}
+                "k": self.k and list(self.k), "vary": self.vary,
+                **self.accuracy.settings}
 
 
 @dataclass(frozen=True)
@@ -143,8 +140,7 @@ class Piece:
     flows: tuple
     k: tuple | None
     vary: str | None
-    tolerance: float
-    max_degree: int
+    accuracy: Accuracy
     width: int  # results of a point
 
     @property

@@ -158,8 +158,19 @@ def test_a_law_of_ones_own_that_contradicts_itself_is_refused():
         def mu(self, I):  # noqa: E741
             return self.mu1 / (1 + I)
 
+    class Short(OwnSaturating):
+        name = "short"
+
+        @property
+        def range(self):
+            return self.mu1, self.mu2
+
+        def between(self, excess, lack):
+            return 1.01 * self.I0 * excess / lack
+
     for law, message in ((Wrong, r"wrong: slope\(I\) contradicts mu\(I\)"), (Falling, "must rise with I"),
-                         (Backwards, r"backwards: inverse\(mu\) contradicts mu\(I\)")):
+                         (Backwards, r"backwards: inverse\(mu\) contradicts mu\(I\)"),
+                         (Short, r"short: between\(excess, lack\) contradicts mu\(I\)")):
         with pytest.raises(ParameterError, match=message):
             law()
 
