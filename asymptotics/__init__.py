@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .flows import expand
-    from .limits import assert_limit, assert_order
+    from .leading import assert_limit
+    from .limits import assert_order
     from .series import Expansion
 
 __all__ = ["Expansion", "assert_limit", "assert_order", "expand"]
 
-_LATER = {"Expansion": "series", "assert_limit": "limits", "assert_order": "limits", "expand": "flows",
+_LATER = {"Expansion": "series", "assert_limit": "leading", "assert_order": "limits", "expand": "flows",
           "flows": "flows"}
 
 

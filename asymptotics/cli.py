@@ -3,71 +3,17 @@
 Exit status: 0 done; 2 bad usage or input; 3 `check` found another order than expected; 130 interrupted.
 """
 
-import argparse
 import shutil
 import sys
-from difflib import get_close_matches
 from textwrap import wrap
 
 from . import __version__
+from .reading import read_csv, source
 from .streams import drop_output, open_streams, say
+from .usage import BadUsage, Help, Parser, add_parameters, nearest, positive
 
 VERBS = ("flows", "expand", "evaluate", "check")
-_REMEDY = "give the output of stability dispersion ... --csv"
-_MARK = "\ufeff"  # of the byte order, which some programs write first
 _INDENT = " " * 8  # of what is left of a line wider than the terminal
-
-
-class BadUsage(ValueError):
-    """What the command line asks for cannot be done."""
-
-
-class _Parser(argparse.ArgumentParser):
-    """Errors as exceptions; no value is given twice; examples in one line, to be copied."""
-
-    def __init__(self, **options):
-        super().__init__(formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False, **options)
-        for action in (None, "store"):
-            self.register("action", action, _Once)
-        self.set_defaults(given=frozenset())
-
-    def error(self, message):
-        raise BadUsage(f"{message} (see: {self.prog} --help)")
-
-    def exit(self, status=0, message=None):
-        sys.stdout.flush()  # of the help: where nobody reads it, say so in `main`
-        super().exit(status, message)
-
-
-class _Once(argparse.Action):
-    """Store a value, and in `given` that it was given: twice is refused, or the first value would get lost."""
-
-    def __call__(self, parser, namespace, values, option_string=None):
-        if self.dest in namespace.given:
-            raise BadUsage(f"{option_string}: given twice, with {getattr(namespace, self.dest)!r} and {values!r}; "
-                           "give it once")
-        setattr(namespace, self.dest, values)
-        namespace.given |= {self.dest}
-
-
-class _Help(argparse.Action):
-    """Print the help of a verb, with the parameters of the flow that has been named before, if any."""
-
-    def __init__(self, option_strings, dest, help):
-        super().__init__(option_strings, argparse.SUPPRESS, nargs=0, default=argparse.SUPPRESS, help=help)
-
-    def __call__(self, parser, namespace, values, option_string=None):
-        from . import flows
-
-        group = namespace.parameters
-        if namespace.flow in flows.names():
-            flow = flows.load(namespace.flow)
-            texts = {parameter.flag: f"{parameter.meaning}, {parameter.range}" for parameter in flow.PARAMETERS}
-            group.title, group.description = f"parameters of {namespace.flow}", flow.SUMMARY
-            for action in group._group_actions:
-                action.help = texts.get(action.option_strings[0], argparse.SUPPRESS)
-        parser.print_help()
-        parser.exit()
 
 
 def main(argv=None) -> int:
@@ -98,8 +44,8 @@ def _run(argv) -> int:
     except BadUsage as reason:
         return _fail(reason, 2)
     except (ValueError, LookupError) as reason:
+        from .comparison import TooFewPoints
         from .flows import NoSuchFlow
-        from .limits import TooFewPoints
         from .parameters import BadParameter
 
         if isinstance(reason, (BadParameter, NoSuchFlow, TooFewPoints)):
@@ -112,63 +58,64 @@ def _fail(reason, status: int) -> int:
     return status
 
 
-def _parser(argv) -> _Parser:
-    parser = _Parser(prog="asymptotics", description="Long-wave and other limits of granular shear flows, exactly.",
-                     epilog="example: asymptotics expand dune --regime shallow --shields 1.5 --depth 10")
+def _parser(argv) -> Parser:
+    parser = Parser(prog="asymptotics", description="Long-wave and other limits of granular shear flows, exactly.",
+                    epilog="example: asymptotics expand dune --regime shallow --shields 1.5 --depth 10")
     parser.add_argument("--version", action="version", version=f"asymptotics {__version__}")
-    verbs = parser.add_subparsers(metavar="VERB", required=True, parser_class=_Parser)
+    verbs = parser.add_subparsers(metavar="VERB", required=True, parser_class=Parser)
     verb = verbs.add_parser("flows", help="flows, their parameters and regimes",
                             epilog="example: asymptotics flows dune")
     verb.add_argument("flow", nargs="?", metavar="FLOW", help="one flow only")
     verb.set_defaults(run=_flows)
-    expand = verbs.add_parser("expand", help="expansion of the growth rate", add_help=False,
-                              epilog="example: asymptotics expand vortex --order 4 --slope-deg 30")
-    expand.add_argument("flow", metavar="FLOW", help="one of those that are listed by: asymptotics flows")
-    expand.set_defaults(run=_expand)
-    form = expand.add_mutually_exclusive_group()
-    form.add_argument("--latex", dest="form", action="store_const", const="latex", help="LaTeX formulas")
-    form.add_argument("--json", dest="form", action="store_const", const="json", help="JSON")
-    expand.add_argument("--numbers", action="store_true", help="defaults for parameters that are not given")
-    evaluate = verbs.add_parser("evaluate", help="the expansion as numbers, in the columns of `stability dispersion`",
-                                add_help=False, epilog="example: asymptotics evaluate dune --k 0.01:0.1:9 --csv")
-    evaluate.add_argument("flow", metavar="FLOW", help="one of those that are listed by: asymptotics flows")
-    evaluate.add_argument("--k", required=True, metavar="SPEC",
-                          help="wavenumbers: a number, a list a,b,c, or a range a:b:n (log-spaced) or a:b:n:lin")
-    form = evaluate.add_mutually_exclusive_group()
-    form.add_argument("--csv", dest="form", action="store_const", const="csv", help="comma-separated values")
-    form.add_argument("--json", dest="form", action="store_const", const="json", help="JSON")
-    evaluate.set_defaults(run=_evaluate)
-    check = verbs.add_parser("check", help="compare with numbers written by `stability dispersion ... --csv`",
-                             add_help=False,
-                             epilog="example: stability dispersion dune --k 1e-6:1e-4:9 --csv | asymptotics check dune")
-    check.add_argument("flow", metavar="FLOW", help="the flow that the numbers belong to")
-    check.add_argument("file", nargs="?", default="-", metavar="CSV", help="file, or - for standard input")
-    check.add_argument("--tolerance", default="0.05", metavar="T", help="allowed difference of the orders")
-    check.add_argument("--part", choices=("real", "imag", "both"), default="both",
-                       help="real: growth rates only; imag: phase speeds only; both: each by itself")
-    check.add_argument("--k-max", metavar="K", help="leave out larger wavenumbers (default: those beyond two decades)")
-    check.set_defaults(run=_check)
-    for verb in (expand, evaluate, check):
+    for verb in (_add_expand(verbs), _add_evaluate(verbs), _add_check(verbs)):
         verb.add_argument("--order", metavar="M", help="highest power of the gauge, e.g. 2 or 4/3")
         verb.add_argument("--regime", metavar="NAME", help="which limit (see: asymptotics flows)")
-        verb.add_argument("-h", "--help", action=_Help, help="show this help and exit")
+        verb.add_argument("-h", "--help", action=Help, help="show this help and exit")
         if argv and argv[0] in VERBS[1:]:
-            _add_parameters(verb)
+            add_parameters(verb)
     return parser
 
 
-def _add_parameters(verb) -> None:
-    """Flags of every flow: a flow is a module that costs sympy, so only when a verb needs them."""
-    from . import flows
+def _add_expand(verbs) -> Parser:
+    verb = verbs.add_parser("expand", help="expansion of the growth rate", add_help=False,
+                            epilog="example: asymptotics expand vortex --order 4 --slope-deg 30")
+    verb.add_argument("flow", metavar="FLOW", help="one of those that are listed by: asymptotics flows")
+    _add_forms(verb, latex="LaTeX formulas", json="JSON")
+    verb.add_argument("--numbers", action="store_true", help="defaults for parameters that are not given")
+    verb.set_defaults(run=_expand)
+    return verb
 
-    group = verb.add_argument_group("parameters of the flow", f"listed by: {verb.prog} FLOW --help")
-    known = {parameter.flag: parameter.name for name in flows.names() for parameter in flows.load(name).PARAMETERS}
-    for flag, name in known.items():
-        for spelling in dict.fromkeys((flag, f"--{name}")):
-            if spelling in verb._option_string_actions:
-                continue  # the wavenumbers of evaluate
-            group.add_argument(spelling, dest=f"parameter {name}", metavar="V", help=argparse.SUPPRESS)
-    verb.set_defaults(parameters=group)
+
+def _add_evaluate(verbs) -> Parser:
+    verb = verbs.add_parser("evaluate", help="the expansion as numbers, in the columns of `stability dispersion`",
+                            add_help=False, epilog="example: asymptotics evaluate dune --k 0.01:0.1:9 --csv")
+    verb.add_argument("flow", metavar="FLOW", help="one of those that are listed by: asymptotics flows")
+    verb.add_argument("--k", required=True, metavar="SPEC",
+                      help="wavenumbers: a number, a list a,b,c, or a range a:b:n (log-spaced) or a:b:n:lin")
+    _add_forms(verb, csv="comma-separated values", json="JSON")
+    verb.set_defaults(run=_evaluate)
+    return verb
+
+
+def _add_check(verbs) -> Parser:
+    verb = verbs.add_parser("check", help="compare with numbers written by `stability dispersion ... --csv`",
+                            add_help=False,
+                            epilog="example: stability dispersion dune --k 1e-6:1e-4:9 --csv | asymptotics check dune")
+    verb.add_argument("flow", metavar="FLOW", help="the flow that the numbers belong to")
+    verb.add_argument("file", nargs="?", default="-", metavar="CSV", help="file, or - for standard input")
+    verb.add_argument("--tolerance", default="0.05", metavar="T", help="allowed difference of the orders")
+    verb.add_argument("--part", choices=("real", "imag", "both"), default="both",
+                      help="real: growth rates only; imag: phase speeds only; both: each by itself")
+    verb.add_argument("--k-max", metavar="K", help="leave out larger wavenumbers (default: those beyond two decades)")
+    verb.set_defaults(run=_check)
+    return verb
+
+
+def _add_forms(verb, **forms: str) -> None:
+    """Flags of the forms that output can have, {name: help}; one of them at most."""
+    group = verb.add_mutually_exclusive_group()
+    for name, meaning in forms.items():
+        group.add_argument(f"--{name}", dest="form", action="store_const", const=name, help=meaning)
 
 
 # -- verbs -----------------------------------------------------------------------------------------------
@@ -238,16 +185,16 @@ def _check(arguments) -> int:
     from .limits import OrderMismatch, assert_order
 
     _load(arguments.flow)
-    tolerance, largest = _positive(arguments.tolerance, "--tolerance"), None
+    tolerance, largest = positive(arguments.tolerance, "--tolerance"), None
     if arguments.k_max is not None:
-        largest = _positive(arguments.k_max, "--k-max")
-    header, columns, left_out = _read_csv(arguments.file)
+        largest = positive(arguments.k_max, "--k-max")
+    header, columns, left_out = read_csv(arguments.file)
     if header.get("flow", arguments.flow) != arguments.flow:
-        raise BadUsage(f"{_source(arguments.file)} holds the flow {header['flow']}, asked for {arguments.flow}; "
+        raise BadUsage(f"{source(arguments.file)} holds the flow {header['flow']}, asked for {arguments.flow}; "
                        f"run: asymptotics check {header['flow']}")
     laws = getattr(flows.load(arguments.flow), "LAWS", ())
     if laws and header.get("law", laws[0]) not in laws:
-        raise BadUsage(f"{_source(arguments.file)} holds friction law {header['law']}; the expansions of "
+        raise BadUsage(f"{source(arguments.file)} holds friction law {header['law']}; the expansions of "
                        f"{arguments.flow} are those of law {' and '.join(laws)}")
     names = {parameter.name for parameter in flows.load(arguments.flow).PARAMETERS}
     values = {name: value for name, value in header.items() if name in names} | _given(arguments)
@@ -273,7 +220,7 @@ def _sigma(columns, arguments):
     if "phase_speed" in columns:
         return columns["growth_rate"] - 1j * columns["k"] * columns["phase_speed"], arguments.part
     if arguments.part == "imag":
-        raise BadUsage(f"{_source(arguments.file)} has no column phase_speed, which --part imag needs")
+        raise BadUsage(f"{source(arguments.file)} has no column phase_speed, which --part imag needs")
     return columns["growth_rate"], "real"
 
 
@@ -291,7 +238,7 @@ def _load(name: str):
     from . import flows
 
     if name not in flows.names():
-        raise BadUsage(f"unknown flow {name!r}{_nearest(name, flows.names())}; flows: {', '.join(flows.names())}")
+        raise BadUsage(f"unknown flow {name!r}{nearest(name, flows.names())}; flows: {', '.join(flows.names())}")
     return flows.load(name)
 
 
@@ -300,94 +247,12 @@ def _nearest_flag(arguments, unknown: str) -> str:
 
     name = getattr(arguments, "flow", None)
     known = [parameter.flag for parameter in flows.load(name).PARAMETERS] if name in flows.names() else []
-    return _nearest(unknown.partition("=")[0], known)
-
-
-def _nearest(name: str, known) -> str:
-    match = get_close_matches(name, known, 1)
-    return f" (did you mean {match[0]!r}?)" if match else ""
+    return nearest(unknown.partition("=")[0], known)
 
 
 def _given(arguments) -> dict[str, str]:
     return {key.partition(" ")[2]: value for key, value in vars(arguments).items()
             if key.startswith("parameter ") and value is not None}
-
-
-def _positive(text: str, flag: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not value > 0:
-        raise BadUsage(f"{flag} must be a positive number, got {text!r}; write it like {flag} 0.05")
-    return value
-
-
-def _source(name: str) -> str:
-    return "standard input" if name == "-" else name
-
-
-def _read_csv(name: str):
-    """Header {key: text} from `# key: value` lines, columns {name: array (rows,)}, and what has been left out."""
-    import csv
-
-    lines = [line for line in _read(name).removeprefix(_MARK).splitlines() if line.strip()]
-    comments = [line[1:].partition(":") for line in lines if line.startswith("#")]
-    header = {key.strip(): value.strip() for key, _, value in comments}
-    names, *rows = [[cell.strip() for cell in row] for row in csv.reader(
-        (line for line in lines if not line.startswith("#")), skipinitialspace=True)] or [[]]
-    if absent := [column for column in ("k", "growth_rate") if column not in names]:
-        empty = "" if names else "is empty: it "
-        raise BadUsage(f"{_source(name)} {empty}has no column {', '.join(absent)}; {_REMEDY}")
-    return header, *_columns(name, names, [dict(zip(names, row, strict=False)) for row in rows])
-
-
-def _read(name: str) -> str:
-    if name == "-" and sys.stdin is None:
-        raise BadUsage("cannot read standard input: it is closed; give the name of a file")
-    try:
-        with (open(name, encoding="utf-8", newline="") if name != "-" else _keep_open(sys.stdin)) as stream:
-            return stream.read()
-    except (OSError, ValueError) as reason:
-        why = getattr(reason, "strerror", None) or ("not text" if isinstance(reason, UnicodeError) else "no such name")
-        raise BadUsage(f"cannot read {_source(name)}: {why}; give a file written by stability dispersion ... --csv"
-                       ) from None
-
-
-def _columns(name: str, names, rows):
-    """Numbers of the resolved rows; the phase speed where there is one, the error 0 where there is none."""
-    import numpy as np
-
-    from .limits import FEWEST
-
-    resolved = [row for row in rows if row.get("status", "resolved").startswith("resolved")]
-    wanted = [column for column in ("k", "growth_rate", "phase_speed") if column in names]
-    if "phase_speed" not in names and len(resolved) < FEWEST:
-        raise BadUsage(f"{_source(name)} has no column phase_speed, and of growth rates alone {FEWEST} are needed "
-                       f"(got {len(resolved)} resolved); {_REMEDY}")
-    try:
-        columns = {column: np.array([float(row[column]) for row in resolved]) for column in wanted}
-        columns["error"] = np.array([abs(float(row.get("error") or 0)) for row in resolved])
-    except (KeyError, ValueError):
-        raise BadUsage(f"{_source(name)}: a row is not numbers; {_REMEDY}") from None
-    if not (columns["k"] > 0).any() or (columns["k"] <= 0).any():
-        raise BadUsage(f"{_source(name)} has no resolved row with k > 0, or one with another k; give at least four "
-                       "small wavenumbers")
-    others = [row["k"] for row in rows if row not in resolved]
-    return columns, [f"{len(others)} of {len(rows)} rows left out: not resolved, first at k = {k}" for k in others[:1]]
-
-
-class _keep_open:
-    """A stream that its `with` block does not close."""
-
-    def __init__(self, stream):
-        self.stream = stream
-
-    def __enter__(self):
-        return self.stream
-
-    def __exit__(self, *_):
-        return None
 
 
 # -- output ----------------------------------------------------------------------------------------------

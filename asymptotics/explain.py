@@ -17,6 +17,7 @@ _STEPS = 1 / 3, 1 / 2, 2 / 3, 1.0, 2.0  # between successive powers of the probl
 _ROUNDING = np.finfo(float).eps  # of the largest difference: where another one vanishes
 _FEWEST = 6  # points of a fit, if there are as many
 _SHRINK = 0.9  # of the number of points from one attempt to the next
+_ALSO, _EXACT = 3.0, 1e-9  # misfit over that of the best fit, up to which another is as good; one of rounding
 _GOOD = 1.0  # misfit of a fit that explains the difference
 _BETTER = 3.0  # a lower power is needed only if the misfit without it is this many times as large
 _ASTRAY, _ASTRAY_POINTS = 0.5, 4  # powers by which numerics rise more slowly than a series that is of no use there
@@ -125,12 +126,21 @@ def _windows(points):
     yield points
 
 
-def extrapolate(k, values, error) -> Fit:
-    """The constant that real values of shape (points,) tend to as k -> 0, by powers of the step that fits best."""
-    count = min(_TERMS, len(k) - 1)
-    best = min((_fit(k, values, error, [step * number for number in range(count)]) for step in _STEPS),
-               key=lambda fit: fit.misfit)
-    return replace(best, error=best.error * min(1.0, best.misfit))  # the fit may be far better than `BEND`
+def extrapolate(k, values, error, steps=_STEPS) -> Fit:
+    """The constant that real values of shape (points,) tend to as k -> 0, by a few powers of one of the `steps`.
+
+    From all points or, where no step explains those, from the smallest; the steps that explain them agree within the
+    `error`. A `misfit` above 1 means that none does: k is too large to tell.
+    """
+    for points in _windows(len(k)):
+        count = min(_TERMS, points - 1)
+        fits = [_fit(k[:points], values[:points], error[:points], [step * number for number in range(count)])
+                for step in steps]
+        best = min(fits, key=lambda fit: fit.misfit)
+        if best.misfit <= _GOOD:
+            break
+    doubt = max(abs(fit.value - best.value) for fit in fits if fit.misfit <= max(_ALSO * best.misfit, _EXACT))
+    return replace(best, error=best.error * min(1.0, best.misfit) + doubt)  # the fit may be far better than `BEND`
 
 
 def _fit(k, difference, error, powers) -> Fit:

@@ -12,6 +12,7 @@ from scipy.linalg import schur
 from style import RED, main, plt
 
 from stability import flows, spectrum
+from stability.modes.accuracy import Accuracy
 from stability.modes.energy import condition_numbers, energy
 from stability.modes.solver import Solver
 
@@ -35,7 +36,7 @@ def compute(fast):
 
 def _compressed():
     """Triangular matrix with c - CENTRE on its diagonal whose resolvent has the energy norm of the flow's."""
-    solver = Solver(FLOW, max_degree=DEGREE)
+    solver = Solver(FLOW, Accuracy(max_degree=DEGREE))
     pencil, norm = solver.pencil(DEGREE), energy(solver, K, DEGREE)
     a, b = pencil.pair(pencil.weights(solver.symbols(K)))
     basis, _ = np.linalg.qr(norm.adjoint[:, np.any(norm.adjoint, axis=0)])

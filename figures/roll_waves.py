@@ -11,7 +11,8 @@ import numpy as np
 from style import BLUE, GREEN, GREY, ORANGE, RED, main, plt
 
 from stability import flows
-from stability.studies.neutral import critical_sweep, neutral_curve
+from stability.studies.critical import critical_sweep
+from stability.studies.neutral import neutral_curve
 
 SLOPES = {22.0: BLUE, 24.0: GREEN, 26.0: ORANGE, 29.0: RED}
 WELL_POSED = 21.7435874, 30.0686769  # slopes between which the model is well-posed at every depth (Barker et al. 2015)

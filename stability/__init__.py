@@ -17,10 +17,11 @@ if TYPE_CHECKING:
     from . import flows
     from .modes.mode import Mode
     from .output.reading import load
+    from .studies.critical import critical
     from .studies.dispersion import DispersionRelation, dispersion
     from .studies.kmax import Optimum, k_max
     from .studies.map import parameter_map
-    from .studies.neutral import critical, neutral_curve
+    from .studies.neutral import neutral_curve
     from .studies.sensitivity import sensitivities
     from .studies.spectrum import Spectrum, spectrum
 
@@ -49,7 +50,7 @@ _LATER = {
     "Mode": "modes.mode",
     "Optimum": "studies.kmax",
     "Spectrum": "studies.spectrum",
-    "critical": "studies.neutral",
+    "critical": "studies.critical",
     "dispersion": "studies.dispersion",
     "flows": "flows",
     "k_max": "studies.kmax",

@@ -76,10 +76,6 @@ class ModeLost(StabilityError):
     """
 
 
-class StepsExhausted(ModeLost):
-    """A mode changes so fast with k that following it takes too many steps."""
-
-
 class WorkersLost(StabilityError):
     """Worker processes end again and again before they have finished anything."""
 

@@ -37,7 +37,7 @@ from stability import NotResolved, ParameterError, StabilityError, dispersion, k
 from stability.cli import main as command
 from stability.flows import FLOWS
 from stability.flows.base import numeric
-from stability.studies.neutral import critical
+from stability.studies.critical import critical
 
 BUDGET = 20.0  # seconds of CPU that a point may take
 SEARCHES = ("critical", "neutral")  # verbs that look over a whole range of a parameter, at each point

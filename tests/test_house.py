@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-PACKAGE = Path(__file__).parents[1] / "stability"
+ROOT = Path(__file__).parents[1]
+PACKAGE = ROOT / "stability"
 FOLDERS = "", "numerics", "equations", "flows", "output", "modes", "bvp", "studies", "cli", "docs"
 LAZY = {"", "__main__", "flows"}  # packages that import what they offer when it is asked for; the way in
 DOORS = {  # from method to what it opens: a Mode is what these start from, and offers them
@@ -118,3 +119,63 @@ def test_a_circle_is_seen(tmp_path):
     (tmp_path / "modes" / "a.py").write_text("def late():\n    from . import b")
     (tmp_path / "modes" / "b.py").write_text("from .a import late")
     assert circles(tmp_path) == {"modes.a", "modes.b"}
+
+
+LINES, BODY = 350, 40  # of a file, of a function with its docstring
+
+
+def too_long(source):
+    """What exceeds the limits in one file, {name: lines}; "" is the file."""
+    functions = [node for node in ast.walk(ast.parse(source))
+                 if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)]
+    lengths = [(node.name, node.end_lineno - node.lineno + 1) for node in functions]
+    found = {name: length for name, length in lengths if length > BODY}
+    whole = len(source.splitlines())
+    return found | ({"": whole} if whole > LINES else {})
+
+
+@pytest.mark.parametrize("package", ["stability", "asymptotics"])
+def test_no_file_and_no_function_is_long(package):
+    long = {str(file.relative_to(ROOT)): too_long(file.read_text()) for file in (ROOT / package).rglob("*.py")}
+    assert not {name: found for name, found in long.items() if found}
+
+
+@pytest.mark.parametrize(("source", "names"), [
+    ("x = 1\n" * LINES, set()), ("x = 1\n" * (LINES + 1), {""}),
+    ("def short():\n" + "    x = 1\n" * (BODY - 1), set()),
+    ("def long():\n" + "    x = 1\n" * BODY + "def long():\n    pass\n", {"long"}),
+    ("class A:\n    async def long(self):\n" + "        x = 1\n" * BODY, {"long"})])
+def test_what_is_long_is_seen(source, names):
+    assert set(too_long(source)) == names
+
+
+FOREIGN = {  # private names of argparse, matplotlib's sliders, scipy's netCDF and sympy: they offer no public ones
+    "_SubParsersAction", "_actions", "_check_value", "_group_actions", "_option_string_actions", "_subparsers",
+    "_handle", "_Encoding", "_attributes", "_to_mpmath", "_exit"}
+
+
+def private(source):
+    """Private names of others that a file uses: imported, or taken from anything but what it defines itself."""
+    tree = ast.parse(source)
+    found = {alias.name for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) for alias in node.names}
+    for node in ast.walk(tree):
+        own = isinstance(node, ast.Attribute) and ast.unparse(node.value) in ("self", "cls", "super()")
+        if isinstance(node, ast.Attribute) and not own:
+            found.add(node.attr)
+    own = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store)}
+    own |= {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}
+    return {name for name in found if name.startswith("_") and not name.startswith("__")} - own - FOREIGN
+
+
+@pytest.mark.parametrize("package", ["stability", "asymptotics"])
+def test_no_file_needs_the_private_names_of_another(package):
+    used = {str(file.relative_to(ROOT)): private(file.read_text()) for file in (ROOT / package).rglob("*.py")}
+    assert not {name: found for name, found in used.items() if found}
+
+
+@pytest.mark.parametrize(("source", "names"), [
+    ("from .a import _b", {"_b"}), ("from . import a\nx = a._b", {"_b"}), ("x = y.z()._b", {"_b"}),
+    ("from .a import __version__, b", set()), ("class A:\n    def f(self):\n        return self._b", set()),
+    ("class A:\n    def __init__(self):\n        self._b = 1\n\n    def f(self, it):\n        return it._b", set())])
+def test_a_private_name_is_seen(source, names):
+    assert private(source) == names

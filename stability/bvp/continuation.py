@@ -12,19 +12,18 @@ import numpy as np
 
 from ..checks import check_wavenumbers
 from ..errors import ModeLost, NotResolved
+from ..modes.accuracy import TOLERANCE
 from ..modes.crests import SEARCH
 from ..modes.eigenvalue import Eigenvalue, Eigenvalues
-from ..modes.solver import TOLERANCE
 from ..numerics.threads import one_thread
-from ..status import RESOLVED
+from ..numerics.walker import Pace, Walker, towards
+from ..status import RESOLVED, Status, unresolved
 from .problem import Problem, solve
 
 _RESIDUALS = (1e-4, 1e-6, 1e-7, 1e-8)  # tolerances of solve_bvp tried in turn
 _STEP_NODES = 100  # a step that needs more than these beyond its mesh has a bad guess
 _START_NODES = 17
-_FIRST_STEP = 0.2  # in log of the parameter
-_LARGEST_STEP = 0.2
-_SMALLEST_STEP = 4e-3
+_PACE = Pace(0.2, 0.2, 4e-3)  # in log of the parameter
 _CHANGE = 0.1  # largest relative difference between predictor and corrector
 _NUDGE = 1e-3  # in log of the parameter, for slopes
 _BEND = 0.07  # error of the trapezoidal rule for a step, relative to its largest slope
@@ -49,7 +48,7 @@ class Point(Eigenvalue):
     error: float
     nodes: int
     unknowns: int
-    status: str
+    status: Status
 
 
 @dataclass(frozen=True)
@@ -200,12 +199,14 @@ def _joined(parts):
                         {value: reason for part in parts for value, reason in part.lost.items()})
 
 
-class _Walk:
+class _Walk(Walker):
     """A walk along k or a parameter: `family` maps its value to (flow, k)."""
 
+    checks = ("changes_little", "bends_little")
+
     def __init__(self, family, start, value, effort):
+        super().__init__(_PACE)
         self.tolerance, self.residuals = effort
-        self.step = _FIRST_STEP
         self.now = start
         self.move(family, value)
 
@@ -220,10 +221,11 @@ class _Walk:
     def to(self, value):
         """Reach the value with solve_bvp's coarsest tolerance, in steps short enough for the predictor."""
         for _ in range(_STEPS):
-            gap = log(value / self.value)
-            if gap == 0:
+            if log(value / self.value) == 0:
                 return self
-            self._advance(value if abs(gap) <= self.step else self.value * exp(np.sign(gap) * self.step))
+            to, _ = towards(self.value, value, self.step)
+            if not self.stride(to, abs(log(to / self.value))) and self.stuck:
+                raise self._lost(self.failure)
         raise self._lost(f"{_STEPS} steps did not reach {value:g}")
 
     @one_thread
@@ -243,27 +245,44 @@ class _Walk:
                 break
             coarse = fine
         status = RESOLVED if error <= self.tolerance * abs(fine.rate) else \
-            f"error {problem.width * error:.1e} exceeds tolerance with {len(fine.mesh)} nodes"
+            unresolved(f"error {problem.width * error:.1e} exceeds tolerance with {len(fine.mesh)} nodes")
         sigma = problem.width * fine.rate
         return Point(problem.flow, problem.k, complex(sigma), float(problem.width * error), len(fine.mesh),
                      fine.spline.c.shape[-1] * len(fine.mesh), status)
 
-    def _advance(self, value):
-        """Take one step to the value, or shorten the step."""
-        length = abs(log(value / self.value))
+    def foresee(self, to):
+        """Mesh, and fields and parameters on it extrapolated in the logarithm of the value."""
         mesh = _thinned(self.now, self.residuals[0])
-        fields, parameters = self._predict(value, mesh)
-        found = self._corrected(value, mesh, fields, parameters)
-        change = self._change(found, mesh, fields, parameters) if found else np.inf
-        slope = self._slope(found, value) if change < _CHANGE else None
-        if slope is not None and self._bends_little(found, slope, log(value / self.value)):
-            self.before, self.now, self.value, self.slope = (self.value, self.now), found, value, slope
-            factor = min(2.0, max(0.7, (0.5 * _CHANGE / (change + 1e-6)) ** 0.5))
-            self.step = min(_LARGEST_STEP, max(length, self.step if length < self.step else 0) * factor)
-            return
-        self.step = length / 3
-        if self.step < _SMALLEST_STEP:
-            raise self._lost("the next step lands on another mode" if found else "solve_bvp fails at the next step")
+        return mesh, *self._predict(to, mesh)
+
+    def correct(self, to, guess):
+        self.failure, self.ahead = "solve_bvp fails at the next step", to
+        found = self._corrected(to, *guess)
+        if found:
+            self.failure, self.slope_ahead = "the next step lands on another mode", None
+            self.change = self._change(found, *guess)
+        return found
+
+    def changes_little(self, new, guess):
+        """Whether what was found is what was foreseen."""
+        return self.change < _CHANGE
+
+    def bends_little(self, new, guess):
+        """Whether the slopes at both ends explain the step: it has not jumped across an avoided crossing."""
+        if self.slope is None:
+            self.slope = self._slope(self.now, self.value)
+        ahead = self.slope_ahead = self._slope(new, self.ahead)
+        if self.slope is None or ahead is None:
+            return False
+        length = log(self.ahead / self.value)
+        miss = abs(new.rate - self.now.rate - length * (self.slope + ahead) / 2)
+        return miss < _BEND * abs(length) * max(abs(self.slope), abs(ahead)) + _BEND_FLOOR * abs(new.rate)
+
+    def factor(self, new, guess):
+        return min(2.0, max(0.7, (0.5 * _CHANGE / (self.change + 1e-6)) ** 0.5))
+
+    def accept(self, to, new):
+        self.before, self.now, self.value, self.slope = (self.value, self.now), new, to, self.slope_ahead
 
     def _corrected(self, value, mesh, fields, parameters):
         problem = Problem(*self.family(value))
@@ -289,15 +308,6 @@ class _Walk:
         """d rate / d log(value) by a second solve next to the first; None if it fails."""
         near = self._corrected(value * exp(_NUDGE), solution.mesh, solution.fields(solution.mesh), solution.parameters)
         return near and (near.rate - solution.rate) / _NUDGE
-
-    def _bends_little(self, found, slope, length):
-        """True if the slopes at both ends explain the step: it has not jumped across an avoided crossing."""
-        if self.slope is None:
-            self.slope = self._slope(self.now, self.value)
-        if self.slope is None:
-            return False
-        miss = abs(found.rate - self.now.rate - length * (self.slope + slope) / 2)
-        return miss < _BEND * abs(length) * max(abs(self.slope), abs(slope)) + _BEND_FLOOR * abs(found.rate)
 
     def _lost(self, why):
         flow, k = self.now.problem.flow, self.now.problem.k

@@ -34,7 +34,7 @@ def main(argv=None):
 
 
 def _run(words):
-    parser = _parser(words)
+    parser = parser_of(words)
     try:
         arguments, unknown = parser.parse_known_args(words)
     except ParameterError:
@@ -107,7 +107,7 @@ class _Parser(argparse.ArgumentParser):
         super().exit(status, message)
 
 
-def _parser(words):
+def parser_of(words):
     """The parser of the verb that is named, with the parameters of the flow that is named; of other verbs the name."""
     from .verbs import VERBS
 

@@ -8,17 +8,18 @@ from pathlib import Path
 
 from ..checks import as_number
 from ..errors import ParameterError
-from ..flows import FLOWS, find
+from ..flows import find
 from ..flows.base import allowed, check_flow, numeric
 from ..flows.catalogue import nearest
-from ..modes.solver import DEGREES, TOLERANCE, check_accuracy
+from ..modes.accuracy import DEGREES, TOLERANCE, check_accuracy
 from ..output.columns import explained
-from ..output.text import check_writable, render, terminal_width, whole_file, write
-from ..status import INTERRUPTED, is_settled
+from ..output.text import check_writable, render, whole_file, write
+from ..status import is_interrupted, is_settled
+from .names import FLOW, flag_of
 from .plotting import look_of, plot_options
 from .progress import Bar
 from .specs import parse_spec
-from .streams import output_closed, say
+from .streams import output_closed, say, terminal_width
 from .verbs import VERBS
 from .verbs.once import NUMBER
 
@@ -28,7 +29,6 @@ FORMS = {".csv": "csv", ".json": "json", ".nc": "netcdf"}  # that the ending of 
 _TEXT = "", ".txt"  # endings of a table
 _RADIANS = 1.6  # degrees: a smaller slope may be one in radians, of which a right angle has 1.57
 _PLOTS = (".png", ".pdf", ".svg")
-FLOW = f"one of {', '.join(FLOWS)}, or your own: path/to/file.py:Class or package.module:Class"
 LAW = ("friction law: linear, saturating, regularised, power, or your own: path/to/file.py:Class; its parameters are "
        "listed by: --law NAME --help")
 
@@ -120,10 +120,6 @@ def flag(item):
     return flag_of(item.name)
 
 
-def flag_of(name):
-    return "--" + name.replace("_", "-")
-
-
 def nearest_flag(arguments, unknown):
     """A hint at the parameter that an unknown option may stand for."""
     if not getattr(arguments, "flow", None):
@@ -179,9 +175,14 @@ def swept_values(text, flow, option="--over"):
     return name, parse_spec(spec, f"{option} {name}", False, item.metadata["unbounded"]).tolist()
 
 
+def accuracy_of(arguments):
+    """The accuracy asked for by `accuracy_options`."""
+    return check_accuracy(arguments.tolerance, arguments.max_degree, ("--tolerance", "--max-degree"))
+
+
 def options_of(arguments):
-    tolerance, max_degree = check_accuracy(arguments.tolerance, arguments.max_degree, ("--tolerance", "--max-degree"))
-    return {"tolerance": tolerance, "max_degree": max_degree}
+    """The same as keyword arguments."""
+    return accuracy_of(arguments).settings
 
 
 def report(arguments, compute):
@@ -189,8 +190,8 @@ def report(arguments, compute):
     form = check_files(arguments)
     result = compute()
     rows, header = result.rows(), result.header()
-    missing = [row for row in rows if row["status"] == INTERRUPTED]
-    failed = [row for row in rows if not is_settled(row["status"]) and row["status"] != INTERRUPTED]
+    missing = [row for row in rows if is_interrupted(row["status"])]
+    failed = [row for row in rows if not is_settled(row["status"]) and not is_interrupted(row["status"])]
     if not arguments.quiet:
         for note in _radians(arguments):
             say(f"stability: {note}")

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from ..errors import ParameterError
-from ..status import INTERRUPTED
+from ..status import is_interrupted
 from .common import flow_of, report, swept_values
 
 _MOST = 42  # curves that differ in colour or line style
@@ -61,7 +61,7 @@ def _members(computations) -> Iterator:
             result = compute()
             done += 1
             yield result
-            if any(row["status"] == INTERRUPTED for row in result.rows()):
+            if any(is_interrupted(row["status"]) for row in result.rows()):
                 return
     except KeyboardInterrupt:
         if not done:

@@ -58,3 +58,18 @@ def say(line):
         return
     with suppress(OSError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stderr.fileno())
+
+
+def terminal_width() -> int | None:
+    """Columns of the terminal that standard output is, None where it is none."""
+    if not sys.stdout.isatty():
+        return None
+    from shutil import get_terminal_size  # slow to import
+
+    return get_terminal_size().columns
+
+
+def put(text: str) -> None:
+    """Write text to standard output, and notice now if nobody reads it."""
+    sys.stdout.write(text)
+    sys.stdout.flush()

@@ -4,7 +4,7 @@ import ast
 from dataclasses import fields
 from pathlib import Path
 
-from ..cli.command import _parser
+from ..cli.command import parser_of
 from ..cli.verbs import VERBS
 from ..flows import FLOWS
 from ..flows.base import allowed, numeric, span_of
@@ -44,7 +44,7 @@ def commands_page() -> str:
     """The help of every verb, as the command prints it."""
     parts = ["# Commands", "", "`stability VERB FLOW --help` adds the parameters of the flow."]
     for verb in VERBS:
-        parser = _parser([verb])
+        parser = parser_of([verb])
         verbs = next(action.choices for action in parser._subparsers._group_actions)
         parts += ["", f"## stability {verb}", "", "```text", verbs[verb].format_help().rstrip(), "```"]
     return "\n".join(parts)

@@ -23,11 +23,12 @@ class Form:
         return Form(total)
 
     def __mul__(self, other):
-        total = Form({})
-        for left, a in self.terms.items():
-            for right, b in _form(other).terms.items():
-                total += Form({tuple(sorted(left + right)): a * b})
-        return total
+        total = {}
+        for right, b in _form(other).terms.items():
+            for left, a in self.terms.items():
+                names = tuple(sorted(left + right)) if left and right else left or right
+                total[names] = total[names] + a * b if names in total else a * b
+        return Form(total)
 
     def __neg__(self):
         return self * -1.0

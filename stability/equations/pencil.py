@@ -177,13 +177,10 @@ class Pencil:
     def _b(self):
         return Stack(self.layout.b, -self._values[self.layout.carrying])
 
-    def b(self, weights, x):
-        """Return B x, (size, points) or (size,), for weights (parts, points) or (parts,) of the parts."""
-        return self._b.total(self._b.spread(weights), self._b.times(x))
-
-    def b_left(self, weights, y):
-        """Return y^T B, (size, points) or (size,)."""
-        return self._b.total_left(self._b.spread(weights), y)
+    def b_products(self, weights):
+        """Return the functions B x of x and y^T B of y, (size, points) or (size,), for weights (parts, points) or
+        (parts,) of the parts."""
+        return self._b.summed(weights)
 
     def factors(self, weights, rate):
         """Return LU factors of A - rate B for weights (parts,) of the parts, or (parts, points) and rates (points,)."""

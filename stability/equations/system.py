@@ -172,7 +172,7 @@ def _edge(layer, end):
 
 
 def _support(series):
-    return tuple(np.flatnonzero(series).tolist())
+    return tuple(series.nonzero()[0].tolist())
 
 
 def _series(number):

@@ -21,8 +21,8 @@ from ..errors import ParameterError
 from ..numerics import chebyshev
 from .base import parameter
 from .bed import creep_parameter
+from .equilibrium import Steady
 from .law import Law
-from .steady import Steady
 
 _POINTS, _ROUNDS = (64, 128, 256), 400
 _CROWDED = 8  # power of the distance from the yield radius

@@ -237,6 +237,14 @@ def check_parameter(flow, item, value):
     return number
 
 
+def check_parameter_name(flow: Flow, name: str) -> str:
+    """Return `name` if it is a numeric parameter of the flow, else raise a ParameterError."""
+    known = [item.name for item in fields(flow) if numeric(item)]
+    if not (isinstance(name, str) and name in known):
+        raise ParameterError(f"{flow.name} has no numeric parameter {shown(name)} to vary; it has {', '.join(known)}")
+    return name
+
+
 def allowed(rule):
     """The admissible values in words: `(1, inf)` is open, `[0, inf]` admits its ends, `a | b` is a choice."""
     if "options" in rule:

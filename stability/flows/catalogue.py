@@ -1,8 +1,9 @@
 """Where flows come from: those of this package, of installed packages, of a running Python, or of one's own file."""
 
+import sys
 from collections.abc import Iterator, MutableMapping
-from difflib import get_close_matches
 from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import ParameterError
@@ -46,6 +47,11 @@ class Catalogue(MutableMapping):
 
     def __len__(self) -> int:
         return len(self._known)
+
+    def is_shipped(self, name: str) -> bool:
+        """Whether the name, one of these, stands for a flow of this package; imports nothing."""
+        found = self._known[name]
+        return isinstance(found, str) or found.__module__.startswith(f"{__package__}.")
 
 
 FLOWS = Catalogue({
@@ -106,12 +112,25 @@ def find(name: str) -> "type[Flow]":
 
 def offers() -> dict[str, str]:
     """The flows of installed packages, {name: "package.module:Class"}; names of this package's own come first."""
+    if not any(map(_may_offer, sys.path)):
+        return {}
     from importlib.metadata import entry_points  # slow to import
 
     return {one.name: one.value for one in entry_points(group=GROUP) if one.name not in FLOWS}
 
 
+def _may_offer(place: str) -> bool:
+    """Whether packages that are installed in this place of the path may offer flows: a look that costs little."""
+    folder = Path(place)
+    if not folder.is_dir():
+        return folder.exists()  # an archive
+    files = (file for kind in ("dist", "egg") for file in folder.glob(f"*.{kind}-info/entry_points.txt"))
+    return any(f"[{GROUP}]" in file.read_text(encoding="utf-8", errors="replace") for file in files)
+
+
 def nearest(name: str, known) -> str:
     """A hint at the name that is meant, or nothing."""
+    from difflib import get_close_matches  # slow to import
+
     match = get_close_matches(name, list(known), 1)
     return f" (did you mean {match[0]!r}?)" if match else ""

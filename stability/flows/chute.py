@@ -22,8 +22,8 @@ from ..equations.forms import Form
 from ..equations.layer import Layer, Profile
 from . import bed as beds
 from .base import parameter
+from .equilibrium import Saturated, Sheared, sheared_layers
 from .law import Law
-from .steady import Saturated, Sheared, sheared_layers
 
 
 @dataclass(frozen=True)

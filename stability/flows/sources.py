@@ -3,11 +3,9 @@
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from hashlib import sha256
 from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
-from traceback import extract_tb
 from types import ModuleType
 from typing import Any
 
@@ -54,7 +52,7 @@ def file_module(path: str) -> ModuleType:
         content = file.read_bytes()
     except OSError as reason:
         raise ParameterError(f"{path}: cannot be read: {reason.strerror}") from None
-    name = f"flows_of_{file.stem}_{sha256(bytes(file.resolve()) + content).hexdigest()[:_DIGITS]}"
+    name = f"flows_of_{file.stem}_{_digits_of(bytes(file.resolve()) + content)}"
     if name in sys.modules:
         return sys.modules[name]
     spec = spec_from_file_location(name, file)
@@ -97,7 +95,7 @@ def _import_failure(asked: str, file: str | None, reason: BaseException) -> Para
     """One line for whatever goes wrong while a file is imported; `file` is the one whose lines are of interest."""
     if isinstance(reason, SyntaxError):
         return ParameterError(f"{reason.filename or asked}, line {reason.lineno}: {reason.msg}")
-    frames = extract_tb(reason.__traceback__)
+    frames = _frames(reason)
     theirs = [frame for frame in frames if frame.filename == file] or [
         frame for frame in frames if not _is_ours(frame.filename) and not frame.filename.startswith("<frozen")]
     place = f"{theirs[-1].filename}, line {theirs[-1].lineno}" if theirs else asked
@@ -136,7 +134,7 @@ def faults() -> Iterator[None]:
         raise
     except Exception as reason:
         theirs = {_file(sys.modules.get(name)) for name, _ in _classes}
-        for frame in reversed(extract_tb(reason.__traceback__)):
+        for frame in reversed(_frames(reason)):
             if Path(frame.filename).resolve() in theirs:
                 raise ParameterError(f"{frame.filename}, line {frame.lineno} ({frame.name}): {_words(reason)}") \
                     from reason
@@ -185,8 +183,8 @@ def _file(module: Any) -> Path | None:
 def _digest(module: Any) -> str | None:
     """Digest of the file of a module and of those beside it whose things it uses; None where it has no file."""
     files = _files(module)
-    total = sha256(b"".join(file.read_bytes() for file in files if file.is_file()))
-    return f"sha256:{total.hexdigest()[:_DIGITS]}" if files else None
+    content = b"".join(file.read_bytes() for file in files if file.is_file())
+    return f"sha256:{_digits_of(content)}" if files else None
 
 
 def _files(module: Any) -> list[Path]:
@@ -201,3 +199,16 @@ def _files(module: Any) -> list[Path]:
                 found[beside] = other
                 left.append(other)
     return sorted(found)
+
+
+def _digits_of(content: bytes) -> str:
+    from hashlib import sha256  # slow to import, and of no use where all flows are those of this package
+
+    return sha256(content).hexdigest()[:_DIGITS]
+
+
+def _frames(reason: BaseException) -> Any:
+    """The frames in which an exception passed, outermost first."""
+    from traceback import extract_tb  # slow to import
+
+    return extract_tb(reason.__traceback__)

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..errors import ModeLost, ParameterError
 from ..flows.sources import shipped
+from .foresight import Foresight
 from .solver import transfer
 from .tracking import Walk
 
@@ -31,11 +32,12 @@ _ASTRAY = 0.5  # largest deviation of the overlap with the next node from 1
 class Branch:
     """The mode `start` followed to any wavenumber; `solver` refines what is asked for, `rough` walks.
 
-    `lost` maps a side, 1 for rising k and -1 for falling k, to the reason why the walk ended there.
+    `lost` maps a side, 1 for rising k and -1 for falling k, to the reason why the walk ended there. `seen` are modes
+    that were looked at before the start was found.
     """
 
-    def __init__(self, solver, start, rough=None):
-        self.solver, self.start = solver, start
+    def __init__(self, solver, start, rough=None, seen=()):
+        self.solver, self.start, self._seen = solver, start, seen
         rough = rough or solver.rough(_ROUGH)
         self._walks = {side: Walk(rough, start, solver) for side in (1, -1)}
         self.lost = {}
@@ -61,6 +63,11 @@ class Branch:
         down, up = self._walks[-1].segments, self._walks[1].segments
         whole = [*down[0][:0:-1], *up[0]]
         return [*(part[::-1] for part in down[:0:-1]), whole, *up[1:]]
+
+    @property
+    def known(self):
+        """{k: mode} of all that was computed on the way, roughly."""
+        return {mode.k: mode for part in (self._seen, *self.segments) for mode in part}
 
     def reach(self, k):
         """Walk until k lies behind; return whether it does."""
@@ -164,20 +171,34 @@ def _near(mode, rate, node):
     return abs(mode.rate - rate) < _DRIFT * (abs(rate) + abs(node.rate - rate))
 
 
-def surface_branch(solver):
-    """Return the branch of the slow surface mode of `solver.flow`; raise ModeLost where it has no long-wave limit."""
-    return Branch(solver, surface_mode(solver.rough(_ROUGH)))
+def rough_solver(solver, known=None):
+    """Return the solver of a walk; `known` are modes of a flow that is nearly the same, {k: mode}."""
+    rough = solver.rough(_ROUGH)
+    if known:
+        rough.foresight = Foresight(rough, known)
+    return rough
 
 
-def surface_mode(solver, highest=_FIRST):
+def surface_branch(solver, known=None):
+    """Return the branch of the slow surface mode of `solver.flow`; raise ModeLost where it has no long-wave limit.
+
+    `known` are modes of a flow that is nearly the same, {k: mode}.
+    """
+    rough, seen = rough_solver(solver, known), []
+    return Branch(solver, surface_mode(rough, seen=seen), rough, seen)
+
+
+def surface_mode(solver, highest=_FIRST, seen=None):
     """Return the slow surface mode at a wavenumber <= `highest` from which on it obeys its long-wave limit.
 
     Value and logarithmic slope must agree there, and again at a fifth and a twenty-fifth of it, no worse: another mode
-    can meet one of them by chance.
+    can meet one of them by chance. The list `seen` collects what was looked at.
     """
     agreeing = []
     for k, limit, exponent in _laws(solver, highest):
         mode, distance = _glance(solver, k, limit, exponent, agreeing[-1][0] if agreeing else None)
+        if mode and seen is not None:
+            seen.append(mode)
         if agreeing and not distance < max(_NO_FARTHER[0] * agreeing[-1][1], _NO_FARTHER[1]):
             agreeing = []
         if distance < _AGREEMENT:
@@ -200,7 +221,8 @@ def _laws(solver, highest):
     tried = highest / _FACTOR ** np.arange(_TRIES)
     for first in range(0, _TRIES, _CONFIRMED):
         few = tried[first: first + _CONFIRMED]
-        solver.prepare(few)
+        if not solver.foresight:
+            solver.prepare(few)
         limits, ahead = np.split(solver.flow.long_wave(np.concatenate((few, 1.01 * few))), 2)
         yield from zip(few.tolist(), limits, np.log(ahead / limits) / log(1.01), strict=True)
 

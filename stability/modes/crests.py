@@ -17,7 +17,7 @@ import numpy as np
 from ..equations.layer import numbers
 from ..errors import ModeLost
 from ..numerics import chebyshev
-from ..status import is_resolved
+from ..status import Status, is_resolved, unresolved
 from .branch import surface_branch
 from .listing import near_neutral, same
 from .memory import branch_of
@@ -61,7 +61,7 @@ class Maximum:
     k: float
     error: float
     mode: Any
-    status: str
+    status: Status
     data_error: float | None = None  # standard error of k from that of a measured base flow
 
     @property
@@ -94,19 +94,25 @@ class Look:
     trouble: str | None
 
 
-def surface_look(solver, low, high):
+def surface_look(solver, low, high, growing=False):
     """Look along the surface mode, from where growth is a power of k to k = high; `low` bounds where that is sought.
 
-    Raises ModeLost where there is no such regime.
+    Where only `growing` crests are wanted, there is no look between nodes that decay clearly. Raises ModeLost where
+    there is no such regime.
     """
     rough, finer = solver.rough(ROUGH), solver.rough(_FINER)
-    with branch_of(solver, surface_branch) as branch:
+    with branch_of(solver, surface_branch, [high]) as branch:
         start = _long_waves(branch, low)
         lost = None if branch.reach(high) else branch.why_lost(high)
         nodes = [node for part in branch.segments for node in part if start <= node.k]
     inside = sum(node.k < high for node in nodes)
-    nodes = [_heard(finer, node) for node in nodes[: inside + 1]]
-    brackets = [pair for a, b in pairwise(nodes) for pair in _brackets(rough, a, b)]
+    nodes, wanted = nodes[: inside + 1], set()
+    for index, (a, b) in enumerate(pairwise(nodes)):
+        if not growing or not _decays(a, b):
+            wanted |= {index, index + 1}
+    nodes = [_heard(finer, node) if index in wanted else node for index, node in enumerate(nodes)]
+    brackets = [pair for index, (a, b) in enumerate(pairwise(nodes)) if {index, index + 1} <= wanted
+                for pair in _brackets(rough, a, b)]
     return Look(brackets, (nodes[:1], [] if lost else nodes[-1:]), lost)
 
 
@@ -214,6 +220,13 @@ def may_grow(left, right):
     return max(left.growth_rate + h * a, right.growth_rate - h * b) > 0
 
 
+def _decays(left, right):
+    """Whether growth between two nodes is so far below 0 that slopes at both ends, taken upwards, do not reach it."""
+    h = log(right.k / left.k)
+    rises = (h * mode.k * (abs(mode.slope.real) + _AUDIBLE * mode.slope_error) for mode in (left, right))
+    return max(left.growth_rate + left.error, right.growth_rate + right.error) + sum(rises) < 0
+
+
 def _long_waves(branch, low):
     """A wavenumber <= low from which down, for a decade, growth is what it is as k -> 0: no crest lies lower."""
     k = _last_regime(branch.solver.flow, low)
@@ -275,7 +288,7 @@ def crest(solver, left, right):
     error = float((abs(now.slope.real) + noise) / abs(curvature))
     status = now.status
     if is_resolved(status) and not error <= max(solver.tolerance, _K_TOLERANCE) * now.k:
-        status = f"error {error:.1e} of k_max exceeds tolerance"
+        status = unresolved(f"error {error:.1e} of k_max exceeds tolerance")
     measured = error_of_maximum(solver, now) if now.growth_rate > 0 else None
     return Maximum(now.k, error, now, status, measured)
 

@@ -51,7 +51,7 @@ def _theta(pencil, weights, rank=None):
     for shift in (0.0, _SHIFT):
         try:
             response = pencil.factors(weights, shift).solve(columns)
-            theta = _eigenvalues(pencil.b(weights[:, None], response)[rows], rank)
+            theta = _eigenvalues(pencil.b_products(weights[:, None])[0](response)[rows], rank)
         except np.linalg.LinAlgError:  # singular, or not finite
             continue
         theta = theta[np.argsort(-np.abs(theta))]

@@ -14,8 +14,9 @@ from ..checks import as_number, shown
 from ..equations.layer import FIELDS, resolved
 from ..errors import ParameterError
 from ..numerics import chebyshev
+from .accuracy import DEGREES
 from .mode import Mode
-from .solver import DEGREES, Solver
+from .solver import Solver
 
 _POINTS = 1537  # of a layer, among which |u| is largest
 _BISECTIONS = 60

@@ -4,6 +4,8 @@ from typing import Any
 
 import numpy as np
 
+from ..status import Status
+
 
 class Eigenvalue:
     """Base of what has a wavenumber `k` and a complex growth rate `sigma`."""
@@ -53,7 +55,7 @@ class Eigenvalues:
         return self._of_each("error")
 
     @property
-    def status(self) -> tuple[str, ...]:
+    def status(self) -> tuple[Status, ...]:
         """"resolved", or what failed, of each."""
         return tuple(mode.status for mode in self.modes)
 

@@ -10,6 +10,7 @@ equations than it would for a normal operator.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 from types import SimpleNamespace
 
 import numpy as np
@@ -20,6 +21,7 @@ from ..equations.layer import resolved
 from ..numerics import chebyshev
 from .solver import Solver
 
+_RULES = 16  # of quadrature that are kept, for degrees in use: some megabytes at most
 _SPARE = 24  # Gauss nodes beyond the degree: 3 are enough for the flows of this package
 
 
@@ -62,13 +64,14 @@ def energy(solver, k, degree):
     for index, layer in enumerate(layers):
         if layer.steady:
             continue
-        nodes, weights = _gauss(degree, resolved(flow, layers, index, _densities).length)
+        length = resolved(flow, layers, index, _densities).length
+        nodes, weights = _gauss(degree, length)
         base = layer.base(nodes)
         root = np.sqrt(weights * np.abs(base.stress * base.rho * base.dz))
-        values = chebyshev.at(nodes, degree)
+        values = _values(degree, length)
         for field, row, size in (("v", "along", stretch * base.g), ("w", "across", width)):
             rows = pencil.rows[f"{layer.name}: momentum {row}"]
-            dual = _dual(nodes, weights, len(rows))
+            dual = _dual(degree, length, len(rows))
             state.append(_spread(pencil, pencil.columns[f"{layer.name}.{field}"], (root * size)[:, None] * values))
             unit = (1j / stretch if field == "v" else 1) / base.stress
             adjoint.append(_spread(pencil, rows, unit * root[:, None] * dual))
@@ -79,10 +82,10 @@ def energy(solver, k, degree):
     return Energy(np.vstack(state), np.vstack(adjoint), width)
 
 
-def condition_numbers(modes):
+def condition_numbers(modes, solver=None):
     """Return the condition numbers (modes,) of eigenvalues of one flow, or of its symmetry classes, in the energy norm.
 
-    Half the domain gives the same number as the whole.
+    Half the domain gives the same number as the whole. `solver` is that of the flow, if there is one already.
 
     They are numbers without units, 1 for a normal operator. Raises nothing of its own.
 
@@ -90,7 +93,7 @@ def condition_numbers(modes):
     >>> [row["condition"] >= 1 for row in spectrum(flows.Couette(), 1.0, 2)]
     [True, True]
     """
-    solvers: dict = {}
+    solvers: dict = {half.flow: half for half in solver.halves} if solver else {}
     norms: dict = {}
     found = []
     for mode in modes:
@@ -110,14 +113,23 @@ def _densities(base, s):
     return base.stress * density * base.g**2, base.stress * density, density / base.stress
 
 
+@lru_cache(maxsize=_RULES)
 def _gauss(degree, length):
     """Nodes and weights on 0 <= s <= 1, enough for squares of series times a density of this many terms."""
     nodes, weights = L.leggauss(degree + max(_SPARE, length // 2 + 1))
     return (1 + nodes) / 2, weights / 2
 
 
-def _dual(nodes, weights, count):
+@lru_cache(maxsize=_RULES)
+def _values(degree, length):
+    """The Chebyshev polynomials up to a degree at those nodes, (nodes, degree + 1)."""
+    return chebyshev.at(_gauss(degree, length)[0], degree)
+
+
+@lru_cache(maxsize=_RULES)
+def _dual(degree, length, count):
     """Matrix (nodes, count) from y to the function f at the nodes with y^H r = integral of conj(f) r, r in T_j."""
+    nodes, weights = _gauss(degree, length)
     legendre = L.legvander(2 * nodes - 1, count - 1) * np.sqrt(2 * np.arange(count) + 1)
     change = legendre.T @ (weights[:, None] * C.chebvander(2 * nodes - 1, count - 1))
     return np.linalg.solve(change, legendre.T).T

@@ -1,4 +1,5 @@
-"""Branches that were followed are kept for a while: who asks about the same flow again goes on from there.
+"""Branches that were followed are kept for a while: who asks about the same flow again goes on from there, and who asks
+about one that is nearly the same foresees from them what a walk will meet.
 
 A walk takes the same steps whatever is asked, so that a branch taken up again is the one that would be followed anew.
 Only those are kept that have met nothing, no collision, near meeting or end: what is met is told by the call that
@@ -8,34 +9,88 @@ alone: another thread follows its own.
 
 from collections import OrderedDict
 from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import fields
+from math import inf, log
 from threading import Lock
 
+import numpy as np
+
 KEPT = 8  # branches, some megabytes each
+_FEW = 20  # wavenumbers whose functions of k are evaluated with those of the modes that are known
+_NEAR = 0.5  # largest distance of flows, in the logarithms of their parameters, whose branches resemble one another
 
 _branches: OrderedDict = OrderedDict()
+_kept: ContextVar = ContextVar("branches", default=_branches)
 _lock = Lock()
 
 
 @contextmanager
-def branch_of(solver, make):
-    """Lend the branch that `make(solver)` returns, one that was followed before if there is one."""
-    key = make, type(solver.flow), solver.flow, solver.tolerance, solver.degrees[-1], solver.bars
+def branch_of(solver, make, wavenumbers):
+    """Lend the branch that `make(solver, known)` returns, one that was followed before if there is one.
+
+    `known` are modes of a flow that is nearly the same, {k: mode}, up to the `wavenumbers` that are asked for, or None.
+    """
+    key = solver.flow, type(solver.flow), make, solver.tolerance, solver.degrees[-1], solver.bars
     try:
         with _lock:
-            branch = _branches.pop(key, None)
+            branch = _kept.get().pop(key, None)
+            near = None if branch else _nearest(*key)
+            known = near and near.known
     except TypeError:  # a flow that cannot be hashed
-        yield make(solver)
+        yield make(solver, None)
         return
-    branch = branch or make(solver)
+    if known:
+        known = _up_to(max(wavenumbers), known)
+        solver.prepare(np.array([*known, *wavenumbers[:_FEW]]))
+    branch = branch or make(solver, known)
     yield branch
     if branch.uneventful and branch.solver.assembly.small:
         with _lock:
-            _branches[key] = branch
-            while len(_branches) > KEPT:
-                _branches.popitem(last=False)
+            branches = _kept.get()
+            branches[key] = branch
+            while len(branches) > KEPT:
+                branches.popitem(last=False)
+
+
+def _nearest(flow, *others):
+    """The branch kept, of the same kind, whose flow is nearest to this one; None where none is near."""
+    near, least = None, _NEAR
+    for (other, *key), branch in _kept.get().items():
+        if key == list(others) and (way := _distance(flow, other)) < least:
+            near, least = branch, way
+    return near
+
+
+def _up_to(k, known):
+    """What is known up to the first wavenumber beyond k."""
+    beyond = min((other for other in known if other >= k), default=inf)
+    return {other: mode for other, mode in known.items() if other <= beyond}
+
+
+def _distance(one, other):
+    """Between two flows that differ in positive numbers alone: the sum of the moduli of log ratios."""
+    total = 0.0
+    for item in fields(one):
+        a, b = getattr(one, item.name), getattr(other, item.name)
+        if a is not b and a != b:
+            if not (isinstance(a, float) and isinstance(b, float) and 0 < a < inf and 0 < b < inf):
+                return inf
+            total += abs(log(a / b))
+    return total
+
+
+@contextmanager
+def apart():
+    """Remember nothing in here of what was before, nor afterwards of what was here: digits depend on no other work."""
+    token = _kept.set(OrderedDict())
+    try:
+        yield
+    finally:
+        _kept.reset(token)
 
 
 def forget():
     """Keep nothing of what was followed."""
     with _lock:
-        _branches.clear()
+        _kept.get().clear()

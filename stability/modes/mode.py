@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import NotResolved
-from ..status import is_resolved
+from ..status import Status, is_resolved
 from .eigenvalue import Eigenvalue
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ class Mode(Eigenvalue):
     error: float
     slope: complex
     degree: int
-    status: str
+    status: Status
     truncation: float
     rounding: float
     rate: complex = field(repr=False)
@@ -59,6 +59,16 @@ class Mode(Eigenvalue):
     def slope_error(self) -> float:
         """Estimate of the absolute error of d sigma/dk."""
         return _SLOPE * self.error / self.k
+
+    @property
+    def group_speed(self) -> float:
+        """Real part of the group velocity d omega/dk, V: omega = i sigma, so that it is -Im d sigma/dk."""
+        return (1j * self.slope).real + 0.0  # no negative zero
+
+    @property
+    def group_error(self) -> float:
+        """Bound of the absolute error of the group speed."""
+        return self.slope_error
 
     def fields(self, z: "ArrayLike") -> "Fields":
         """Return velocities, stresses and pressure of the eigenfunction at heights z, as `eigenfunction.Fields`.

@@ -4,6 +4,7 @@ In a layer whose short waves grow without bound (`flows.rheology`) the model its
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,8 @@ from ..numerics.threads import one_thread
 POINTS = 201  # heights of a layer at which C is looked at
 
 _INSIDE = 1e-9  # distance from an edge, in s, at which a limit is taken
+_PARTS, _CUTS = 64, 9  # 64^9 = 2^54 parts of an interval: as many as double precision tells apart
+_REMEMBERED = 64  # flows, of which it is known whether they are ill posed
 
 
 @dataclass(frozen=True)
@@ -72,8 +75,8 @@ def well_posedness(flow, points=POINTS):
     is no flow.
     """
     parts, strips = [], []
+    s = _points(points)
     for layer in check_flow(flow).layers(numbers(flow)):
-        s = (1 - np.cos(np.pi * np.arange(points) / (points - 1))) / 2
         height = layer.height(s)
         ratio, alpha, eta, rho = _coefficients(layer, s)
         ill = ill_posed(ratio, alpha)
@@ -84,11 +87,38 @@ def well_posedness(flow, points=POINTS):
     return WellPosedness(flow, tuple(names.tolist()), heights, conditions, growths, ills, tuple(strips))
 
 
+def ill_posed_strips(flow, points=POINTS):
+    """Return the ill-posed `Strip`s of a flow, as far as they show at as many heights of each layer."""
+    return tuple(strip for layer, ill in _looked_at(flow, points) if ill.any()
+                 for strip in _strips(layer, _points(points), ill))
+
+
 def ill_posed_somewhere(flow, points=POINTS):
     """Whether some layer of the flow is ill posed at one of as many heights."""
-    s = (1 - np.cos(np.pi * np.arange(points) / (points - 1))) / 2
-    coefficients = (_coefficients(layer, s) for layer in flow.layers(numbers(flow)))
-    return any(np.any(ill_posed(ratio, alpha)) for ratio, alpha, *_ in coefficients)
+    try:
+        hash(flow)
+    except TypeError:
+        return _somewhere(flow, points)
+    return _remembered(flow, points)
+
+
+def _somewhere(flow, points):
+    return any(ill.any() for _, ill in _looked_at(flow, points))
+
+
+_remembered = lru_cache(maxsize=_REMEMBERED)(_somewhere)
+
+
+def _points(count):
+    """Points (count,) of a layer from edge to edge, dense near the edges."""
+    return (1 - np.cos(np.pi * np.arange(count) / (count - 1))) / 2
+
+
+def _looked_at(flow, points):
+    """Each layer, and where it is ill posed (points,)."""
+    for layer in flow.layers(numbers(flow)):
+        ratio, alpha, *_ = _coefficients(layer, _points(points))
+        yield layer, ill_posed(ratio, alpha)
 
 
 def _coefficients(layer, s):
@@ -111,8 +141,10 @@ def _strips(layer, s, ill):
 
 
 def _edge(layer, low, high, ill_below):
-    for _ in range(60):
-        middle = (low + high) / 2
-        ratio, alpha, _, _ = _coefficients(layer, np.array([middle]))
-        low, high = (middle, high) if ill_posed(ratio, alpha)[0] == ill_below else (low, middle)
-    return middle
+    """Where a layer changes its kind between two points: the interval is cut into parts until rounding."""
+    for _ in range(_CUTS):
+        s = np.linspace(low, high, _PARTS + 1)
+        ratio, alpha, *_ = _coefficients(layer, s)
+        other = int(np.argmax(ill_posed(ratio, alpha)[1:] != ill_below)) + 1
+        low, high = s[other - 1], s[other]
+    return (low + high) / 2

@@ -4,22 +4,20 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from ..checks import check_integer, check_tolerance
 from ..equations.pencil import Layout, Pencil, Weights, weights_of
 from ..equations.system import System
 from ..equations.table import Table
 from ..flows.base import check_flow
-from ..numerics.refine import refine, refine_many
-from ..status import RESOLVED
+from ..numerics.refine import VECTOR, refine, refine_many
+from ..status import RESOLVED, unresolved
+from .accuracy import TOLERANCE, Accuracy
 from .cutoff import neglected
 from .mode import Mode
 from .response import data_error, spread_of
 
-DEGREES = (8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 128, 160, 192, 256, 320,
-           384, 512)
-TOLERANCE = 1e-10  # default bound on error / |sigma| for a resolved mode
-
 _FAR_BELOW = 1e-15  # relative truncation error that is aimed at with the default tolerance
+_VECTOR = 0.01  # error of vectors without bars, in units of the tolerance
+_GLANCE = 0.3  # relative distance of a rate from a long-wave limit at which a mode may be meant
 _LEAST = 32  # degree of the smallest table of entries
 _SMALL = 1024  # degree times terms of the longest series up to which layouts, some megabytes each, are kept ...
 _LAYOUTS, _TABLES = 48, 8  # ... for other flows, and how many
@@ -90,15 +88,17 @@ class Solver:
     truncation alone.
     """
 
-    def __init__(self, flow, tolerance=TOLERANCE, max_degree=DEGREES[-1], assembly=None, bars=True):
+    def __init__(self, flow, accuracy=Accuracy(), assembly=None, bars=True):  # noqa: B008 - a value that never changes
         self.flow = check_flow(flow)
         self.bars = bars
-        self.tolerance = tolerance
+        self.accuracy, self.tolerance = accuracy, (tolerance := accuracy.tolerance)
         self.truncation = 0.5 * tolerance if tolerance > TOLERANCE else min(0.5 * tolerance, _FAR_BELOW)
-        self.degrees = tuple(d for d in DEGREES if d <= max_degree) or (max_degree,)
+        self.vectors = VECTOR if bars else max(VECTOR, _VECTOR * tolerance)
+        self.degrees = accuracy.degrees
         self.assembly = assembly or Assembly(flow)
         self.pencil = self.assembly.pencil
         self._known = {}
+        self.foresight = None
 
     @property
     def halves(self):
@@ -108,7 +108,7 @@ class Solver:
     @cached_property
     def _halves(self):
         parts = self.flow.halves()
-        return () if parts == (self.flow,) else tuple(Solver(half, self.tolerance, self.degrees[-1], bars=self.bars)
+        return () if parts == (self.flow,) else tuple(Solver(half, self.accuracy, bars=self.bars)
                                                       for half in parts)
 
     def prepare(self, k):
@@ -122,7 +122,7 @@ class Solver:
             self._known.clear()
         rows = weights.value.T.copy(), weights.slope.T.copy(), weights.spread.T.copy()
         for index, one in enumerate(k.tolist()):
-            self._known[one] = symbols, rows, index
+            self._known[one] = [symbols, rows, index, None]
 
     def _at(self, k):
         k = float(k)
@@ -132,7 +132,7 @@ class Solver:
 
     def symbols(self, k):
         """Return {name: (value, slope, error)} of the symbols at one wavenumber."""
-        symbols, _, index = self._at(k)
+        symbols, _, index, _ = self._at(k)
         return {name: tuple(values[index] for values in triple) for name, triple in symbols.items()}
 
     def weights(self, k):
@@ -140,8 +140,11 @@ class Solver:
         if isinstance(k, list):
             each = [self.weights(one) for one in k]
             return Weights(*(np.array([getattr(one, name) for one in each]).T for name in ("value", "slope", "spread")))
-        _, rows, index = self._at(k)
-        return Weights(*(array[index] for array in rows))
+        known = self._at(k)
+        if known[-1] is None:
+            _, rows, index, _ = known
+            known[-1] = Weights(*(array[index] for array in rows))
+        return known[-1]
 
     def width(self, k):
         """sigma / rate at wavenumber k."""
@@ -149,7 +152,9 @@ class Solver:
 
     def rough(self, tolerance):
         """Return a solver of the same equations, no more accurate than this and without bars."""
-        return Solver(self.flow, max(self.tolerance, tolerance), self.degrees[-1], self.assembly, bars=False)
+        rough = Solver(self.flow, self.accuracy.rougher(tolerance), self.assembly, bars=False)
+        rough._known = self._known
+        return rough
 
     def solve(self, k, rate, vectors=None, degree=None, glance=False):
         """Return the mode next to `rate`, at the first degree that resolves it; at the first one tried for a `glance`.
@@ -157,11 +162,14 @@ class Solver:
         `vectors` is (degree, x, y) of a nearby mode, if known. Raises ModeLost where the iteration
         does not settle; a mode still unresolved at the largest degree is returned with that status.
         """
+        likely = self.foresight and self.foresight.at(k, rate, *((_GLANCE,) if glance else ()))
+        if likely and (glance or self.fits(likely)):
+            return likely
         start = self.degrees.index(degree or (vectors[0] if vectors else self.degrees[min(2, len(self.degrees) - 1)]))
         for degree in self.degrees[start:]:
             pencil = self.pencil(degree)
             x, y = transfer(self, vectors, degree) if vectors else (None, None)
-            eigen = refine(pencil, self.weights(k), rate, x, y, self.bars)
+            eigen = refine(pencil, self.weights(k), rate, x, y, self.bars, self.vectors)
             mode = self._mode(k, degree, eigen)
             if glance or self.fits(mode):
                 break
@@ -180,14 +188,16 @@ class Solver:
     def solve_many(self, wavenumbers, rates, vectors, degree):
         """Return the modes at many wavenumbers at once, None where more work is needed.
 
-        `rates` (points,) and right and left `vectors` (points, size) of this degree are good guesses.
+        `rates` (points,) and right and left `vectors` (points, size) of this degree are good guesses. Without rates
+        the quotients of the vectors are.
         """
         modes = []
         count = max(1, min(_TOGETHER[0], _TOGETHER[1] // degree))
         for first in range(0, len(wavenumbers), count):
             part = slice(first, first + count)
-            eigen = refine_many(self.pencil(degree), self.weights(wavenumbers[part]), rates[part],
-                                *(rows[part] for rows in vectors), self.bars)
+            eigen = refine_many(self.pencil(degree), self.weights(wavenumbers[part]),
+                                None if rates is None else rates[part],
+                                *(rows[part] for rows in vectors), self.bars, self.vectors)
             found = [self._mode(k, degree, one) for k, one in zip(wavenumbers[part], eigen.split(), strict=True)]
             modes += [mode if settled and self.fits(mode) else None
                       for mode, settled in zip(found, eigen.settled, strict=True)]
@@ -204,8 +214,8 @@ class Solver:
     def overlap(self, old, mode):
         """Product of the two biorthogonal overlaps of a new mode with an old one: near 1 for one mode, 0 for two."""
         x, y = transfer(self, (old.degree, old.x, old.y), mode.degree)
-        weights, pencil = self.weights(mode.k).value, self.pencil(mode.degree)
-        return np.vdot(y, pencil.b(weights, mode.x)) * np.vdot(mode.y, pencil.b(weights, x))
+        b, _ = self.pencil(mode.degree).b_products(self.weights(mode.k).value)
+        return np.vdot(y, b(mode.x)) * np.vdot(mode.y, b(x))
 
     def next_degree(self, mode):
         """The degree to try first near this mode: one rung lower where it is over-resolved."""
@@ -226,7 +236,7 @@ class Solver:
         error = truncation + rounding + lacking
         status = RESOLVED
         if not error <= self.tolerance * abs(sigma):  # nor where it is not a number
-            status = f"error {error:.1e} exceeds tolerance at degree {degree}"
+            status = unresolved(f"error {error:.1e} exceeds tolerance at degree {degree}")
         slope = width * eigen.slope + (1 + self.flow.order) * sigma / k
         return Mode(self.flow, float(k), complex(sigma), float(error), complex(slope), degree, status,
                     float(truncation), float(rounding), eigen.rate, eigen.slope, eigen.x, eigen.y,
@@ -238,11 +248,6 @@ class Solver:
             return None
 
         return data_error(self, k, degree, eigen)
-
-
-def check_accuracy(tolerance, max_degree, names=("tolerance", "max_degree")):
-    """Return both as numbers, or raise a ParameterError that uses these names."""
-    return check_tolerance(tolerance, names[0]), check_integer(max_degree, names[1], DEGREES[0], DEGREES[-1])
 
 
 def transfer(solver, vectors, degree):

@@ -11,19 +11,19 @@ from math import ceil, copysign, exp, floor, log
 
 import numpy as np
 
-from ..errors import ModeLost, StepsExhausted
+from ..errors import ModeLost
+from ..numerics.walker import Pace, Walker, towards
 from .solver import transfer
 
-_FIRST_STEP = 0.3  # in log k
-_LARGEST_STEP = 0.6
+_LARGEST_STEP = 0.6  # in log k
 _CLOSE = 0.02  # step below which a collision is looked for, and a rough walk goes on with full accuracy
 _NARROW = 5e-3  # step that tells of another mode near by
-_SMALLEST_STEP = 1e-8
+_PACE = Pace(0.3, _LARGEST_STEP, 1e-8)
 _PREDICTION = 0.05  # relative error of the predictor at which the step length is kept
 _BEND = 0.1  # largest departure of a step from the mean of its end slopes, relative
 _OVERLAP = 0.4  # largest deviation of the overlap from 1
 _STEPS, _STRETCH = 1000, 100  # attempts, and after how many of them it is asked whether those left can suffice
-_PACE = 0.1  # least way in log k in every _STRETCH attempts of a walk that has no end
+_LEAST_WAY = 0.1  # least way in log k in every _STRETCH attempts of a walk that has no end
 _BLIND = 100  # attempts in a row that the largest degree does not resolve
 _TRUST = 0.01  # largest relative error of a mode from which a walk goes on
 _RUNG = 0.05  # spacing in log k of the ladder that a walk without an end lands on
@@ -55,40 +55,20 @@ class Encounter:
                 "relative, and may be the other at slightly different parameters")
 
 
-@dataclass(frozen=True)
-class Path:
-    """Modes at the wavenumbers asked for, in that order, and the collisions met on the way.
-
-    `lost` says why the mode could not be followed, if it could not; the modes then end before it.
-    """
-
-    modes: tuple
-    collisions: tuple
-    lost: ModeLost | None = None
-
-
-def follow(solver, start, wavenumbers):
-    """Follow the mode `start` through `wavenumbers`, a monotone sequence leading away from start.k, one by one."""
-    walk, modes = Walk(solver, start), []
-    try:
-        for k in np.asarray(wavenumbers, dtype=float).tolist():
-            modes.append(walk.to(k))
-    except ModeLost as reason:
-        return Path(tuple(modes), tuple(walk.collisions), reason)
-    return Path(tuple(modes), tuple(walk.collisions))
-
-
-class Walk:
+class Walk(Walker):
     """The state of a walk along k: the last two modes, the step in log k, the collisions so far.
 
     `segments` lists the modes visited, a new list after each collision. Where steps get short the walk goes on with
     the solver `closer`, if there is one.
     """
 
+    checks = ("trusted", "same_kind", "smooth", "overlaps")
+
     def __init__(self, solver, start, closer=None):
+        super().__init__(_PACE)
         self.solver, self.closer = solver, closer
         self.before, self.now = None, start
-        self.step, self.shortest = _FIRST_STEP, (_FIRST_STEP, start.k)
+        self.shortest = self.step, start.k
         self.collisions = []
         self.segments = [[start]]
         self._attempts, self._blind, self._behind = 0, 0, start.k
@@ -99,22 +79,22 @@ class Walk:
         while gap := log(k / self.now.k):
             if attempts and attempts % _STRETCH == 0:
                 if abs(log(self.now.k / behind)) * (_STEPS - attempts) < abs(gap) * _STRETCH:
-                    raise self._lost(f"{_STEPS} steps do not reach k = {k:g}", StepsExhausted)
+                    raise self._lost(f"{_STEPS} steps do not reach k = {k:g}")
                 behind = self.now.k
             attempts += 1
             self._watch()
-            self._advance(k if abs(gap) <= self.step else self.now.k * exp(copysign(self.step, gap)))
+            self._advance(towards(self.now.k, k, self.step)[0])
         return self.now
 
     def beyond(self, k):
         """Step on until wavenumber k lies behind, by the same steps whichever it is."""
         side = copysign(1.0, log(k / self.segments[0][0].k))
-        if self.solver.flow.functions:
-            self.solver.prepare(np.array(_ladder(self.now.k, k)))
+        if self.solver.flow.functions and not self.solver.foresight:
+            self.solver.prepare(np.array(_likely(self.now.k, k, side * self.step)))
         while side * log(k / self.now.k) > 0:
             if self._attempts and self._attempts % _STRETCH == 0:
-                if abs(log(self.now.k / self._behind)) < _PACE:
-                    raise self._lost(f"{_STRETCH} steps took it from k = {self._behind:.6g} no further", StepsExhausted)
+                if abs(log(self.now.k / self._behind)) < _LEAST_WAY:
+                    raise self._lost(f"{_STRETCH} steps took it from k = {self._behind:.6g} no further")
                 self._behind = self.now.k
             self._attempts += 1
             self._watch()
@@ -131,33 +111,31 @@ class Walk:
         """Give up where the largest degree has not resolved the mode for long."""
         self._blind = 0 if self.solver.resolves(self.now) else self._blind + 1
         if self._blind > _BLIND:
-            raise self._lost(f"degree {self.now.degree} does not resolve it any more", StepsExhausted)
+            raise self._lost(f"degree {self.now.degree} does not resolve it any more")
 
     def _advance(self, k):
         """Take one step to k, or shorten the step, or cross a collision."""
-        length = abs(log(k / self.now.k))
-        rate, vectors = self._predict(k)
-        try:
-            mode = self.solver.solve(k, rate, vectors, self.solver.next_degree(self.now))
-            fits = self._trusted(mode) and self._same_kind(mode) and self._smooth(mode)
-            deviation = abs(self.solver.overlap(self.now, mode) - 1) if fits else np.inf
-        except ModeLost:
-            deviation = np.inf
-        if deviation < _OVERLAP:
-            self._accept(mode)
-            miss = abs(mode.rate - rate) / (abs(mode.rate) + abs(mode.k * mode.rate_slope)) + 1e-12
-            factor = min(2.0, max(0.5, (_PREDICTION / miss) ** 0.25))
-            self.step = min(_LARGEST_STEP, max(length, self.step if length < self.step else 0) * factor)
+        if self.stride(k, abs(log(k / self.now.k))):
             return
-        self.step = length / 3
         self.shortest = min(self.shortest, (self.step, self.now.k))
         if self.step < _CLOSE and self.closer:
             self._look_closer()
             return
         if self.step < _CLOSE and self._cross(k):
             return
-        if self.step < _SMALLEST_STEP:
+        if self.stuck:
             raise self._lost(f"no mode overlaps its neighbour at k = {k:.6g}")
+
+    def correct(self, to, guess):
+        return self.solver.solve(to, *guess, self.solver.next_degree(self.now))
+
+    def factor(self, new, guess):
+        miss = abs(new.rate - guess[0]) / (abs(new.rate) + abs(new.k * new.rate_slope)) + 1e-12
+        return min(2.0, max(0.5, (_PREDICTION / miss) ** 0.25))
+
+    def accept(self, to, new):
+        self.before, self.now = self.now, new
+        self.segments[-1].append(new)
 
     def _look_closer(self):
         """Go on from here with full accuracy."""
@@ -165,30 +143,30 @@ class Walk:
         now = self.solver.solve(self.now.k, self.now.rate, (self.now.degree, self.now.x, self.now.y))
         self.segments[-1][-1] = self.now = now
 
-    def _trusted(self, mode):
+    def trusted(self, mode, guess):
         """Whether the mode is resolved well enough to be followed, if not to the tolerance."""
         return mode.error <= max(_TRUST, self.solver.tolerance) * abs(mode.sigma)
 
-    def _smooth(self, mode):
+    def smooth(self, mode, guess):
         """Whether the rates and slopes at both ends of the step belong to one smooth curve in log k."""
         h, rise = log(mode.k / self.now.k), mode.rate - self.now.rate
         a, b = (h * end.k * end.rate_slope for end in (self.now, mode))
         return abs(rise - (a + b) / 2) <= _BEND * (abs(rise) + abs(a) + abs(b)) + 1e-9 * abs(mode.rate)
 
-    def _same_kind(self, mode):
+    def same_kind(self, mode, guess):
         """Real stays real and complex stays complex, unless a collision has been found."""
         real = abs(mode.rate.imag) < 1e-10 * abs(mode.rate)
         return not self.solver.pencil(mode.degree).real or real == (self.now.rate.imag == 0)
 
-    def _accept(self, mode):
-        self.before, self.now = self.now, mode
-        self.segments[-1].append(mode)
+    def overlaps(self, mode, guess):
+        """Whether the new and the old eigenvectors are biorthogonal partners."""
+        return abs(self.solver.overlap(self.now, mode) - 1) < _OVERLAP
 
-    def _lost(self, why, kind=ModeLost):
-        return kind(f"{self.solver.flow}: the mode is lost at k = {self.now.k:.6g}, "
-                    f"sigma = {self.now.sigma:.6g}: {why}")
+    def _lost(self, why):
+        return ModeLost(f"{self.solver.flow}: the mode is lost at k = {self.now.k:.6g}, "
+                        f"sigma = {self.now.sigma:.6g}: {why}")
 
-    def _predict(self, k):
+    def foresee(self, k):
         """Extrapolate rate and vectors to k from the last two modes."""
         now, before = self.now, self.before
         t = log(k / now.k)
@@ -261,10 +239,14 @@ def _rung(k, step):
     return rung if abs(log(rung / k)) > 0.5 * abs(step) and (rung - k) * step > 0 else ahead
 
 
-def _ladder(start, end):
-    """The rungs from a little before `start` to a little behind `end`."""
-    low, high = (floor(log(side(start, end)) / _RUNG) for side in (min, max))
-    return [exp(_RUNG * index) for index in range(low - 1, high + 3)]
+def _likely(start, end, step):
+    """The wavenumbers that a walk comes to on its way if every step is as long as it may be."""
+    found = []
+    while (end - start) * step > 0:
+        start = _rung(start, step)
+        found.append(start)
+        step = copysign(min(2 * abs(step), _LARGEST_STEP), step)
+    return found
 
 
 def _extrapolate(now, before, ratio):

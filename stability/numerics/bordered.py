@@ -10,8 +10,11 @@ import numpy as np
 from scipy.linalg import lapack
 from scipy.sparse import csr_array
 
+from .stack import with_data
+
 _UNEVEN = 1e6  # largest entry of a sum above which its rows and columns are scaled
 
+_FULL = {"f": (lapack.dgetrf, lapack.dgetri), "c": (lapack.zgetrf, lapack.zgetri)}
 _BAND = {"f": (lapack.dgbtrf, lapack.dgbtrs), "c": (lapack.zgbtrf, lapack.zgbtrs)}
 
 
@@ -37,11 +40,12 @@ class Places:
         place = place[self._order]
         first = np.flatnonzero(np.diff(place, prepend=-1))
         self._place, self.row, self.column = place[first], row[self._order][first], column[self._order][first]
-        self._part, self._first, self._parts = part[self._order], np.append(first, len(place)), parts
+        self._matrix = csr_array((np.zeros(len(place)), part[self._order], np.append(first, len(place))),
+                                 (len(first), parts))
 
     def matrix(self, value):
         """The sparse matrix (places, parts) of entries with these values (entries,)."""
-        return csr_array((value[self._order], self._part, self._first), (len(self._place), self._parts))
+        return with_data(self._matrix, value[self._order])
 
     def blocks(self, values):
         """Return band, right and bottom with these values (..., places) in place."""
@@ -88,6 +92,17 @@ class Bordered:
         return scales
 
 
+def _inverse(matrix):
+    """Of one small matrix, without what numpy's costs beside its work."""
+    factor, invert = _FULL[matrix.dtype.kind]
+    lu, pivots, info = factor(matrix)
+    if not info:
+        inverse, info = invert(lu, pivots)
+    if info:
+        raise np.linalg.LinAlgError("singular border")
+    return inverse
+
+
 class Factors:
     """LU factors of the sum of the parts of a `Bordered` times weights (parts,); `uneven` where it had to be scaled.
 
@@ -106,7 +121,7 @@ class Factors:
         self._bottom = bottom[:, : self._interior]
         self._coupled = self._inner(right)
         self._schur = bottom[:, self._interior:] - self._bottom @ self._coupled
-        self._border = np.linalg.inv(self._schur)
+        self._border = _inverse(self._schur)
 
     def phase(self):
         """Return the determinant over its modulus (scales are positive: they leave it alone)."""

@@ -16,6 +16,11 @@ CHOP = 8 * np.finfo(float).eps  # of the largest coefficient of a series: less i
 
 def points(count):
     """First-kind Chebyshev points mapped to 0 < s < 1; shape (count,). The ends are never met."""
+    return _points(count).copy()
+
+
+@lru_cache(maxsize=16)
+def _points(count):
     return (1 + C.chebpts1(count)) / 2
 
 

@@ -25,7 +25,7 @@ _TINY = np.finfo(float).tiny
 _FACTORISATIONS = 12
 _ROUNDS = 3  # of factorisations at many points
 _CORRECTIONS = 12
-_VECTOR = 1e-9  # error of a vector, and so of the slope, that is accepted
+VECTOR = 1e-9  # error of a vector, and so of the slope, that is accepted
 _OFFSET = 1e-3  # of a factorisation for corrections from its rate: it must not be singular
 
 
@@ -52,18 +52,19 @@ class Eigen:
         return [Eigen(*values) for values in zip(*(getattr(self, field.name) for field in fields(self)), strict=True)]
 
 
-def refine(pencil, weights, rate, x=None, y=None, bars=True):
+def refine(pencil, weights, rate, x=None, y=None, bars=True, accuracy=VECTOR):
     """Iterate from a `rate` (and vectors (size,), if known) until the quotient has settled; raise ModeLost if not.
 
-    `weights` are those of one point, (parts,); so are all arrays in the result, without an axis of points.
+    `weights` are those of one point, (parts,); so are all arrays in the result, without an axis of points. Vectors are
+    wrong by `accuracy` at most, the rate by its square: less is right for a rough look.
     """
     x, y = (_start(pencil.size) if vector is None else vector for vector in (x, y))
-    y = y.conj()  # y^H from here on
+    y, b = y.conj(), pencil.b_products(weights.value)  # y^H from here on
     for _ in range(_FACTORISATIONS):
         if pencil.real and not np.imag(rate):
             rate, x, y = np.real(rate), x.real, y.real
         factors = _factors(pencil, weights.value, rate)
-        x, y, settled = _iterate(pencil, weights.value, factors, x, y)
+        x, y, settled = _iterate(b, factors, x, y, accuracy)
         if settled:
             found = _quotient(pencil, weights, x, y, settled, bars)
             return _twice(pencil, weights, found, bars) if factors.uneven else found
@@ -73,20 +74,24 @@ def refine(pencil, weights, rate, x=None, y=None, bars=True):
     raise ModeLost(f"inverse iteration near rate {complex(rate):.6g} did not settle")
 
 
-def refine_many(pencil, weights, rate, x, y, bars=True):
+def refine_many(pencil, weights, rate, x, y, bars=True, accuracy=VECTOR):
     """Refine good guesses of rates (points,) and vectors (points, size) at many points, whose `weights` are given.
 
-    Without `bars` the rounding is left at 0: a rough look does not need it.
+    Without `bars` the rounding is left at 0: a rough look does not need it. Without a rate the quotient of the vectors
+    is the guess.
     """
     x, y = x.T, y.conj().T
+    if rate is None:
+        rate = _rate(pencil, weights.value * pencil.stack.brackets(y, pencil.stack.times(x)))
     if pencil.real and not np.any(np.imag(rate)):
         rate, x, y = rate.real, x.real, y.real
-    x, y = np.ascontiguousarray(x), np.ascontiguousarray(y)
+    x, y = (np.ascontiguousarray(vectors, np.result_type(vectors, rate)) for vectors in (x, y))
     settled, left = np.zeros(len(rate), bool), np.arange(len(rate))
     for _ in range(_ROUNDS):
         value = weights.value[:, left]
         factors = pencil.factors(value, rate[left])
-        x[:, left], y[:, left], settled[left] = _iterate(pencil, value, factors, x[:, left], y[:, left])
+        x[:, left], y[:, left], settled[left] = _iterate(
+            pencil.b_products(value), factors, x[:, left], y[:, left], accuracy)
         settled[left] &= ~factors.uneven
         rate = _rate(pencil, weights.value * pencil.stack.brackets(y, pencil.stack.times(x)))
         left = left[~settled[left] & ~factors.uneven]
@@ -95,24 +100,28 @@ def refine_many(pencil, weights, rate, x, y, bars=True):
     return _quotient(pencil, weights, x, y, settled, bars)
 
 
-def _iterate(pencil, weights, factors, x, y):
-    """Two inverse iterations from either side; return both vectors, and whether their quotient is settled."""
-    x, x_error = _iterated(lambda v: factors.solve(pencil.b(weights, v)), x)
-    y, y_error = _iterated(lambda v: factors.solve_left(pencil.b_left(weights, v)), y)
-    return x, y, _settled(x_error, y_error)
+def _iterate(b, factors, x, y, accuracy):
+    """Two inverse iterations from either side; return both vectors, and whether their quotient is settled.
+
+    `b` are the products with B from the right and from the left.
+    """
+    x, x_error = _iterated(b[0], factors.solve, x)
+    y, y_error = _iterated(b[1], factors.solve_left, y)
+    return x, y, _settled(x_error, y_error, accuracy)
 
 
-def _iterated(step, vector):
+def _iterated(b, solve, vector):
     """Two inverse iterations with one factorisation; return the vector and an estimate of its error.
 
     Vectors are scaled by one component. The second step shrinks what the first one changed by the
     ratio of the distances to the wanted and the next eigenvalue, and so will the next.
     """
-    pivot = np.argmax(np.abs(vector), axis=0)
+    pivot = np.abs(vector).argmax(axis=0)
     if vector.ndim > 1:
         pivot = pivot, np.arange(vector.shape[1])
-    start, first = (v / v[pivot] for v in (vector, step(vector)))
-    second = step(first)
+    first = solve(b(vector))
+    start, first = vector / vector[pivot], first / first[pivot]
+    second = solve(b(first))
     second = second / second[pivot]
     change, error = _converging(second - first, second, _size(first - start) / _size(second))
     return second, error
@@ -137,7 +146,7 @@ def _corrected(pencil, weights, found, bars):
     if pencil.real and not np.imag(rate):
         rate, x, y = np.real(rate), x.real, y.real
     factors = _factors(pencil, value, rate * (1 + _OFFSET))
-    bx, by = pencil.b(value, x), pencil.b_left(value, y)
+    bx, by = (product(vector) for product, vector in zip(pencil.b_products(value), (x, y), strict=True))
     along_x, along_y = x / (by @ x), y / (by @ x)
     x_change = y_change = 0.0
     for _ in range(_CORRECTIONS):
@@ -176,9 +185,9 @@ def _converging(step, vectors, before):
     return change, change**2 / np.maximum(np.maximum(change, before), _TINY) + _EPS
 
 
-def _settled(x_error, y_error):
-    """Whether the quotient of two vectors with these errors is right to rounding, and its slope nearly so."""
-    return (x_error * y_error < 0.1 * _EPS) & (np.maximum(x_error, y_error) < _VECTOR)
+def _settled(x_error, y_error, accuracy=VECTOR):
+    """Whether two vectors with these errors are right to `accuracy`: their quotient then is to its square."""
+    return np.maximum(x_error, y_error) < accuracy
 
 
 def _size(vectors):

@@ -24,13 +24,13 @@ class Lines:
         key = key[self._order]
         first = np.flatnonzero(np.diff(key, prepend=-1))
         self.part, self.row = key[first] // shape[0], shape[0] - 1 - key[first] % shape[0]
-        self._column, self._starts = column[self._order], np.append(first, len(key))
-        self._shape = len(first), shape[1]
+        self._places = csr_array((np.zeros(len(key)), column[self._order], np.append(first, len(key))),
+                                 (len(first), shape[1]))
         self._parts, self._rows = parts, shape[0]
 
     def matrix(self, value):
         """The sparse matrix (lines, columns) of entries with these values (entries,)."""
-        return csr_array((value[self._order], self._column, self._starts), self._shape)
+        return with_data(self._places, value[self._order])
 
     def to_rows(self, values):
         """Sums of the values (lines, ...) of each row, (rows, ...)."""
@@ -79,8 +79,7 @@ class Stack:
 
     @cached_property
     def _squares(self):
-        matrix = self._matrix
-        return csr_array((square(matrix.data), matrix.indices, matrix.indptr), matrix.shape)
+        return with_data(self._matrix, square(self._matrix.data))
 
     def times(self, x):
         """Products of every part with x: (lines, points), for the methods below."""
@@ -98,6 +97,11 @@ class Stack:
         """Sum over the parts, weights times y^T part: (columns, points)."""
         return self._transposed @ (spread * y[self._lines.row])
 
+    def summed(self, weights):
+        """Products of the sum of the parts, times weights (parts, ...), with vectors: functions of x, and of y."""
+        spread = self.spread(weights)
+        return lambda x: self.total(spread, self.times(x)), lambda y: self.total_left(spread, y)
+
     def brackets(self, y, products):
         """y^T part x for every part: (parts, points)."""
         return self._lines.to_parts(y[self._lines.row] * products)
@@ -105,6 +109,13 @@ class Stack:
     def squares(self, weights, y, x):
         """Sum over the entries of all parts of |weight y_i entry_ij x_j|^2: (points,)."""
         return (self.spread(square(weights)) * square(y)[self._lines.row] * (self._squares @ square(x))).sum(axis=0)
+
+
+def with_data(matrix, data):
+    """A sparse matrix with entries in the same places; what holds these was checked when the other was made."""
+    other = object.__new__(type(matrix))
+    other.__dict__.update(matrix.__dict__, data=data)
+    return other
 
 
 def square(z):

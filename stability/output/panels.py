@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import ParameterError
+from ..status import Status
 from .spacing import is_logarithmic, spans_decades
 
 LINE, MARKED, POINTS = "line", "marked", "points"  # a line, one with dots, dots alone
@@ -44,7 +45,7 @@ class Curve:
     x_error: np.ndarray | None = None
     y_error: np.ndarray | None = None
     of: int | None = None
-    status: tuple[str, ...] | None = None
+    status: tuple[Status, ...] | None = None
     fade: float = 1.0
 
 
@@ -120,6 +121,11 @@ def scale_of(values: Any) -> str:
     known = np.array([value for value in values if isfinite(value)], dtype=float)
     logarithmic = spans_decades(known) and (len(known) < 3 or is_logarithmic(np.unique(known)))
     return "log" if logarithmic else "linear"
+
+
+def scale_found(values: Any) -> str:
+    """The scale of values that were not asked for but found: "log" if they span decades, however they lie."""
+    return "log" if spans_decades(np.asarray(values, dtype=float)) else "linear"
 
 
 def swept_curves(x: Iterable[float], y: Iterable[float], level: str, label: str | None = None, kind: str = MARKED,

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..checks import check_file_name
 from ..errors import ParameterError
+from ..status import read
 from .csv_text import no_nan, parse_csv, read_bytes, text_of
 from .stored import Stored
 
@@ -50,7 +51,13 @@ def load(path: Any) -> Stored:
 
 
 def _rows(columns):
-    return tuple(dict(zip(columns, values, strict=True)) for values in zip(*columns.values(), strict=True))
+    rows = (dict(zip(columns, values, strict=True)) for values in zip(*columns.values(), strict=True))
+    return tuple(map(_told, rows))
+
+
+def _told(row):
+    """A row with its status as one, not as a text."""
+    return {**row, "status": read(row["status"])} if isinstance(row.get("status"), str) else row
 
 
 # -- JSON ------------------------------------------------------------------------------------------------
@@ -66,7 +73,7 @@ def _json(text, path):
     header = _infinite({key: value for key, value in content.items() if key != "rows"})
     parameters = _infinite(header.pop("parameters", {}))
     first = {key: header.pop(key) for key in ("flow", "method", "version") if key in header}
-    return Stored({**first, **parameters, **header}, tuple(_infinite(row) for row in content["rows"]))
+    return Stored({**first, **parameters, **header}, tuple(_told(_infinite(row)) for row in content["rows"]))
 
 
 def _infinite(values):

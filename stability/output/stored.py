@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import ParameterError
+from ..status import RESOLVED
 from .mapplots import states
 from .panels import (
     BARS,
@@ -155,7 +156,7 @@ class Stored(Record):
                 names = np.array([self._symbol(row[y]) for row in rows])
                 curves.append(Curve(self._numbers(x, rows), names, label, kind))
                 continue
-            status = tuple(str(row.get("status", "resolved")) for row in rows)
+            status = tuple(row.get("status", RESOLVED) for row in rows)
             curves += swept_curves(self._numbers(x, rows), self._numbers(y, rows),
                                    f"{self._symbol(x)} = {value_text(float('inf'))}", label, kind, status=status)
         return tuple(curves)

@@ -4,7 +4,6 @@ import csv
 import io
 import json
 import os
-import shutil
 import sys
 import tempfile
 from collections.abc import Collection, Iterator, Sequence
@@ -112,11 +111,6 @@ def _blocks(rows, width):
             count -= 1
         yield part
         rest = rest[count:]
-
-
-def terminal_width() -> int | None:
-    """Columns of the terminal that standard output is, None where it is none."""
-    return shutil.get_terminal_size().columns if sys.stdout.isatty() else None
 
 
 def _table(rows, digits, gap):

@@ -1,6 +1,6 @@
 """The base flow of a flow: profiles of velocity, stresses and viscosities through its layers, as they are solved."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -42,8 +42,8 @@ class BaseFlow(Record):
 
     flow: Any
     layer: tuple[str, ...]
-    profiles: dict[str, np.ndarray]
-    flux: dict[str, float]
+    profiles: dict[str, np.ndarray] = field(compare=False)  # they follow from the flow
+    flux: dict[str, float] = field(compare=False)
     dimension: ClassVar[str] = "height"
     bounded: ClassVar[str] = "dU"
 

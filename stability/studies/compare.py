@@ -15,9 +15,10 @@ import numpy as np
 from ..checks import check_options
 from ..errors import ModeLost, ParameterError
 from ..flows.base import check_flow
+from ..modes.accuracy import DEGREES, Accuracy
 from ..modes.branch import Branch, surface_mode
 from ..modes.dense import finite_rates
-from ..modes.solver import DEGREES, Solver
+from ..modes.solver import Solver
 from ..numerics.threads import one_thread
 from ..output.panels import MARKED, THIN, Axis, Curve, Panel
 from ..output.record import Record
@@ -222,7 +223,7 @@ def _collocation(flow, mode, degree, points):
 
 def _followed(flow, mode, degree, points):
     """The mode at mode.k after a sweep at one degree, all included."""
-    solver = Solver(flow, 1.0, degree)
+    solver = Solver(flow, Accuracy(1.0, degree))
     solver.degrees = (degree,)
     sweep = wavenumbers(mode.k, points)
     solver.prepare(sweep)

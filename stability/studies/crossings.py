@@ -6,7 +6,6 @@ zero. In an ill-posed flow it is the surface mode that is asked about, at each v
 """
 
 from itertools import pairwise
-from math import copysign, exp, log
 
 import numpy as np
 
@@ -15,11 +14,11 @@ from ..modes.branch import surface_branch
 from ..modes.crests import default_mode, depth_of
 from ..modes.listing import near_neutral
 from ..modes.memory import branch_of
+from ..numerics.walker import Pace, Walker, towards
 from .ridges import Landscape, may_turn
 from .thresholds import zero_at
 
-_ARC = 0.25  # largest step in the logarithm of the parameter
-_SHORTEST = 1e-4
+_PACE = Pace(0.25, 0.25, 1e-4)  # in the logarithm of the parameter
 _SAME = 1e-3  # relative distance of sigma within which two modes are one
 _ITERATIONS = 60
 
@@ -50,7 +49,7 @@ def _modes(plane, k, value):
     """Points at k of the modes that matter at a value."""
     solver = plane.solver(value)
     if default_mode(plane.flow_at(value)) == "surface":
-        with branch_of(solver, surface_branch) as branch:
+        with branch_of(solver, surface_branch, [k]) as branch:
             found, lost = branch.at([k])
         if lost:
             raise ModeLost(lost[k])
@@ -80,18 +79,26 @@ def _one(a, b):
 
 def follow(plane, start, value):
     """Yield points of the mode from one value to another; ends early where it is lost."""
-    now, step, side = start, _ARC, copysign(1.0, log(value / start.value))
-    while now.value != value:
-        gap = abs(log(value / now.value))
-        try:
-            new = plane.move(now, now.k, value if gap <= step else now.value * exp(side * step))
-        except (ModeLost, ParameterError):
-            step = min(step, gap) / 3
-            if step < _SHORTEST:
-                return
-            continue
-        now, step = new, min(_ARC, 2 * step)
-        yield now
+    walk = _AtOneWavenumber(plane, start)
+    while walk.now.value != value and not walk.stuck:
+        if walk.stride(*towards(walk.now.value, value, walk.step)):
+            yield walk.now
+
+
+class _AtOneWavenumber(Walker):
+    """A mode followed along the parameter."""
+
+    failures = (ModeLost, ParameterError)
+
+    def __init__(self, plane, start):
+        super().__init__(_PACE)
+        self.plane, self.now = plane, start
+
+    def correct(self, to, guess):
+        return self.plane.move(self.now, self.now.k, to)
+
+    def accept(self, to, new):
+        self.now = new
 
 
 def _turns(plane, way):

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -10,28 +9,32 @@ import numpy as np
 from ..checks import check_flag, check_options, check_wavenumbers
 from ..errors import ModeLost, naming
 from ..flows.base import check_flow
-from ..modes.branch import Branch, surface_branch
+from ..modes.accuracy import DEGREES, TOLERANCE, check_accuracy
+from ..modes.branch import Branch, rough_solver, surface_branch
 from ..modes.eigenvalue import Eigenvalues
 from ..modes.listing import leading_modes, listed
 from ..modes.memory import branch_of
 from ..modes.mode import Mode, require
-from ..modes.solver import DEGREES, TOLERANCE, Solver, check_accuracy
+from ..modes.short_waves import ill_posed_somewhere, ill_posed_strips
+from ..modes.solver import Solver
 from ..modes.tracking import Collision, Encounter
 from ..numerics.threads import one_thread
-from ..output.panels import GROWTH_RATE, LINE, PHASE_SPEED, POINTS, WAVENUMBER, Curve, Panel, scale_of
+from ..output.panels import GROWTH_RATE, LINE, PHASE_SPEED, POINTS, WAVENUMBER, Axis, Curve, Panel, scale_of
 from ..output.record import Record
 from ..output.text import Row, measured
-from ..status import INTERRUPTED, is_resolved, outgrown
+from ..status import INTERRUPTED, LOST, Status, is_resolved
+from ..status import outgrown as told_outgrown
+from .outgrown import Outgrown, outgrown
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ..flows import Flow
-    from ..modes.short_waves import Strip
-    from .outgrown import Outgrown
 
 MODES = ("surface", "leading", "most-unstable")
+GROUP_SPEED = Axis("group_speed", "group speed $c_g$")
 
+_NOT_LOOKED = "the flow is ill posed; whether an internal mode outgrows the surface mode is told with rivals=True"
 _PORTION = 200  # wavenumbers followed before what is done is handed over
 
 
@@ -41,7 +44,9 @@ class DispersionRelation(Eigenvalues, Record):
 
     `lost` maps wavenumbers at which the mode could not be followed to the reason (only with
     strict=False); they are left out of the arrays, not of the rows. `collisions` lists the mergers met on the
-    way, `encounters` the near ones, `asked` all wavenumbers in the order asked for.
+    way, `encounters` the near ones, `asked` all wavenumbers in the order asked for. `rival` tells from where on an
+    internal mode of an ill-posed flow grows faster, None where none does or it was not looked for; `remarks` are what
+    else the model says of itself.
 
     `flow` and `mode` are what was asked for, `modes` (points,) hold a `Mode` each, `method` and `settings` say how they
     were computed. Units, L and V being the scales of the flow: `k` 1/L, `sigma`, `growth_rate` and `error` V/L, `slope`
@@ -64,6 +69,8 @@ class DispersionRelation(Eigenvalues, Record):
     method: str = "collocation"
     settings: Mapping[str, Any] = field(default_factory=dict, compare=False)
     encounters: tuple[Encounter, ...] = ()
+    rival: Outgrown | None = field(default=None, compare=False)
+    remarks: tuple[str, ...] = field(default=(), compare=False)
     dimension: ClassVar[str] = "k"
 
     @property
@@ -77,26 +84,48 @@ class DispersionRelation(Eigenvalues, Record):
         return self._of_each("slope")
 
     @property
+    def status(self) -> tuple[Status, ...]:
+        """"resolved", or what failed, of each mode; and whether another one outgrows it."""
+        return tuple(map(self._status, self.modes))
+
+    def _status(self, mode: Mode) -> Status:
+        return told_outgrown(mode.status) if self.rival and mode.k >= self.rival.k else mode.status
+
+    @property
     def subtitle(self) -> str:
         return f"; {self.mode} mode"
 
+    @property
+    def group_speed(self) -> np.ndarray:
+        """Real parts of the group velocity d omega/dk = i d sigma/dk, V."""
+        return self._of_each("group_speed")
+
+    @property
+    def group_error(self) -> np.ndarray:
+        """Bounds of the absolute error of the group speed."""
+        return self._of_each("group_error")
+
     def panels(self) -> tuple[Panel, ...]:
-        """Growth rate and phase speed against k."""
+        """Growth rate, phase speed and group speed against k."""
         modes = sorted(self.modes, key=lambda mode: mode.k)
         k, error = (np.array([getattr(mode, name) for mode in modes], dtype=float) for name in ("k", "error"))
-        told = {row["k"]: row["status"] for row in self.rows()}
-        status = tuple(told.get(mode.k, mode.status) for mode in modes)
+        quantities = [(GROWTH_RATE, error), (PHASE_SPEED, error / k)]
+        if self._differentiated:
+            quantities.append((GROUP_SPEED, np.array([mode.group_error for mode in modes], dtype=float)))
+        status = tuple(map(self._status, modes))
         x = replace(WAVENUMBER, scale=scale_of(k))
         kind = LINE if len(k) > 1 else POINTS
         return tuple(Panel(x, y, (Curve(k, np.array([getattr(mode, y.name) for mode in modes]), kind=kind,
                                         y_error=bars, status=status),), zero="y" if y is GROWTH_RATE else "")
-                     for y, bars in ((GROWTH_RATE, error), (PHASE_SPEED, error / k)))
+                     for y, bars in quantities)
+
+    @property
+    def _differentiated(self) -> bool:
+        """Whether d sigma/dk is known: solve_bvp gives values alone."""
+        return self.method == "collocation"
 
     def rows(self) -> list[Row]:
-        rows, faster = [self._row(k, mode) for k, mode in self._points()], self._outgrown
-        if faster:
-            rows = [{**row, "status": outgrown(row["status"])} if row["k"] >= faster.k else row for row in rows]
-        return rows
+        return [self._row(k, mode) for k, mode in self._points()]
 
     def columns(self) -> dict[str, np.ndarray]:
         columns = super().columns()
@@ -109,26 +138,10 @@ class DispersionRelation(Eigenvalues, Record):
     def notes(self) -> list[str]:
         met = {str(event) for event in (*self.collisions, *self.encounters)}
         notes = sorted(met | set(self.lost.values()) - {INTERRUPTED})
-        return notes + [naming(self.flow, str(doubt)) for doubt in self._doubts]
+        return [*notes, *self.remarks]
 
     def about(self) -> dict[str, Any]:
         return {"mode": self.mode}
-
-    @property
-    def _doubts(self) -> "list[Outgrown] | tuple[Strip, ...]":
-        """What the model says of itself: the mode is outgrown, or the flow is ill posed."""
-        if self.mode == MODES[0] or self.method != "collocation":
-            return [self._outgrown] if self._outgrown else []
-        from ..modes.short_waves import well_posedness
-
-        return well_posedness(self.flow).strips
-
-    @cached_property
-    def _outgrown(self) -> "Outgrown | None":
-        """Where an internal mode of an ill-posed flow grows faster."""
-        from .outgrown import outgrown
-
-        return outgrown(self) if self.method == "collocation" else None
 
     def _points(self) -> "list[tuple[float, Mode | None]]":
         """Every wavenumber asked for with its mode, None where that was lost."""
@@ -137,16 +150,21 @@ class DispersionRelation(Eigenvalues, Record):
 
     def _row(self, k: float, mode: Any) -> Row:
         """Without numbers where the mode is lost, or where the most unstable one is not resolved: that is no result."""
-        resolution = "degree" if self.method == "collocation" else "nodes"
+        resolution = "degree" if self._differentiated else "nodes"
         refused = mode is None or self.mode == "most-unstable" and not is_resolved(mode.status)
-        names = "growth_rate", "phase_speed", "error", *measured(self.flow)
+        slopes = ("group_speed", "group_error") if self._differentiated else ()
+        names = "growth_rate", "phase_speed", "error", *slopes, *measured(self.flow)
         numbers = {name: None if refused else getattr(mode, name) for name in names}
         return {"k": k, **numbers, resolution: getattr(mode, resolution, None),
-                "status": mode.status if mode else INTERRUPTED if self.lost.get(k) == INTERRUPTED else "lost"}
+                "status": self._status(mode) if mode else self._lost(k)}
+
+    def _lost(self, k: float) -> Status:
+        status = INTERRUPTED if self.lost.get(k) == INTERRUPTED else LOST
+        return told_outgrown(status) if self.rival and k >= self.rival.k else status
 
 
 def dispersion(flow: "Flow", k: "ArrayLike", mode: str | None = None, *, tolerance: float = TOLERANCE,
-               max_degree: int = DEGREES[-1], strict: bool = True) -> DispersionRelation:
+               max_degree: int = DEGREES[-1], strict: bool = True, rivals: bool = False) -> DispersionRelation:
     """Return the `DispersionRelation` of a flow at wavenumbers k, a number or a sequence in any order.
 
     mode="surface" follows the slow surface mode from its long-wave limit (the default where the flow has
@@ -154,7 +172,8 @@ def dispersion(flow: "Flow", k: "ArrayLike", mode: str | None = None, *, toleran
     otherwise (the default elsewhere), and "most-unstable" takes the least stable mode of the spectrum at each k. A
     mode that is followed is the same one at a wavenumber whatever else is asked for. `tolerance` bounds the error
     relative to |sigma|. Raises NotResolved or ModeLost; with strict=False the record says in `status` and `lost` what
-    failed.
+    failed. With `rivals` it also says from where on an internal mode of an ill-posed flow outgrows the surface mode: it
+    takes dense spectra to know.
 
     Wavenumbers are in 1/L, growth rates in V/L, L and V being the scales of the flow; ParameterError is raised for what
     is no flow, wavenumber or mode.
@@ -164,9 +183,9 @@ def dispersion(flow: "Flow", k: "ArrayLike", mode: str | None = None, *, toleran
     >>> print(f"{relation.modes[0].c:.10f}")  # Orszag (1971): 0.23752649 + 0.00373967i
     0.2375264888+0.0037396706j
     """
-    strict = check_flag("strict", strict)
+    strict, rivals = check_flag("strict", strict), check_flag("rivals", rivals)
     parts = list(dispersion_parts(flow, k, mode, tolerance=tolerance, max_degree=max_degree))
-    relation = joined(parts, check_wavenumbers(k).tolist())
+    relation = judged(joined(parts, check_wavenumbers(k).tolist()), rivals)
     if strict:
         for reason in relation.lost.values():
             raise ModeLost(reason)
@@ -181,15 +200,15 @@ def dispersion_parts(flow: "Flow", k: "ArrayLike", mode: str | None = None, *, t
     check_flow(flow)
     wavenumbers = check_wavenumbers(k)
     mode = default_mode(flow) if mode is None else check_options("mode", mode, MODES)
-    tolerance, max_degree = check_accuracy(tolerance, max_degree)
+    accuracy = check_accuracy(tolerance, max_degree)
     walk = {"surface": _surface, "leading": _leading, "most-unstable": _most_unstable}[mode]
-    portions, step = walk(Solver(flow, tolerance, max_degree), np.unique(wavenumbers)), one_thread(next)
+    portions, step = walk(Solver(flow, accuracy), np.unique(wavenumbers)), one_thread(next)
     while portion := step(portions, None):
         found, lost, met = portion
         collisions = tuple(event for event in met if isinstance(event, Collision))
         encounters = tuple(event for event in met if isinstance(event, Encounter))
         yield DispersionRelation(flow, mode, tuple(found.values()), lost, collisions, encounters=encounters,
-                                 settings={"tolerance": tolerance, "max_degree": max_degree})
+                                 settings=accuracy.settings)
 
 
 def joined(parts: list[DispersionRelation], asked: list[float]) -> DispersionRelation:
@@ -202,6 +221,22 @@ def joined(parts: list[DispersionRelation], asked: list[float]) -> DispersionRel
     encounters = tuple(encounter for part in parts for encounter in part.encounters)
     return replace(parts[0], modes=tuple(found[k] for k in asked if k in found), lost=lost, collisions=collisions,
                    encounters=encounters, asked=tuple(asked))
+
+
+def judged(relation: DispersionRelation, rivals: bool = True) -> DispersionRelation:
+    """Return the relation with what the model says of itself: the flow is ill posed, or a surface mode is outgrown.
+
+    Whether it is takes dense spectra, and is looked at where `rivals` is true.
+    """
+    flow = relation.flow
+    if relation.method != "collocation" or not ill_posed_somewhere(flow):
+        return relation
+    if relation.mode != MODES[0]:
+        return replace(relation, remarks=tuple(naming(flow, str(strip)) for strip in ill_posed_strips(flow)))
+    if not rivals:
+        return replace(relation, remarks=(naming(flow, _NOT_LOOKED),))
+    rival = outgrown(relation)
+    return replace(relation, rival=rival, remarks=(naming(flow, str(rival)),) if rival else ())
 
 
 def default_mode(flow: "Flow") -> str:
@@ -225,7 +260,7 @@ def _leading(solver, wavenumbers):
 def _followed(solver, start, wavenumbers):
     told = set()
     try:
-        with branch_of(solver, start) as branch:
+        with branch_of(solver, start, wavenumbers) as branch:
             for first in range(0, len(wavenumbers), _PORTION):
                 found, lost = branch.at(wavenumbers[first: first + _PORTION])
                 met = [event for event in (*branch.collisions, *branch.encounters) if event not in told]
@@ -235,16 +270,17 @@ def _followed(solver, start, wavenumbers):
         yield {}, dict.fromkeys(wavenumbers.tolist(), str(reason)), ()
 
 
-def leading_branch(solver):
+def leading_branch(solver, known=None):
     """Return the branch of the mode that leads at `flow.wavenumber`, within its symmetry class on half the domain.
 
-    Of two that lead together, the one that travels downstream faster.
+    Of two that lead together, the one that travels downstream faster. `known` are modes of a flow that is nearly the
+    same, {k: mode}.
     """
     rivals = listed(solver, solver.flow.wavenumber, 1).modes
     best = max(mode.growth_rate - mode.error for mode in rivals)
     mode = max((mode for mode in rivals if mode.growth_rate + mode.error >= best), key=lambda mode: mode.phase_speed)
     (half,) = (half for half in solver.halves if half.flow == mode.flow)
-    return Branch(half, mode)
+    return Branch(half, mode, rough_solver(half, known))
 
 
 def _most_unstable(solver, wavenumbers):

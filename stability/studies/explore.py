@@ -187,7 +187,7 @@ class Explorer:
     def _follow(self, k):
         """Follow the mode over wavenumbers; what is lost is left out, and said."""
         try:
-            self.relation = dispersion(self.flow, k, strict=False)
+            self.relation = dispersion(self.flow, k, strict=False, rivals=True)
         except StabilityError as reason:
             self.relation = None
             self._say(str(reason))

@@ -10,10 +10,11 @@ import numpy as np
 from ..checks import check_flag, check_options, check_range
 from ..errors import ModeLost, NotResolved, naming
 from ..flows.base import check_flow
+from ..modes.accuracy import DEGREES, TOLERANCE, check_accuracy
 from ..modes.crests import Maximum, crest, default_mode, look, may_grow, search_of, surface_look
 from ..modes.listing import listed
-from ..modes.short_waves import well_posedness
-from ..modes.solver import DEGREES, TOLERANCE, Assembly, Solver, check_accuracy
+from ..modes.short_waves import Strip, ill_posed_strips
+from ..modes.solver import Assembly, Solver
 from ..numerics.threads import one_thread
 from ..output.panels import (
     GROWTH_AT_K_MAX,
@@ -31,7 +32,7 @@ from ..output.panels import (
 from ..output.record import Record
 from ..output.symbols import axis_label, symbol_of, value_text
 from ..output.text import Row, measured
-from ..status import STABLE, is_outgrown, is_resolved, outgrown
+from ..status import Kind, Status, is_outgrown, is_resolved, outgrown, unresolved
 from .outgrown import faster
 
 if TYPE_CHECKING:
@@ -49,7 +50,8 @@ class Optimum(Record):
     `error` (of k_max) belong to the first and raise NotResolved if there is none.
 
     `flow` is what was asked about, `maxima` are `Maximum` records with `k`, `error`, `growth_rate`, `mode` and
-    `status`; `settings` has search, mode and tolerance. Units: `k_max` and `error` 1/L, `growth_rate` V/L,
+    `status`; `settings` has search, mode and tolerance, `strips` are the ill-posed parts of the flow where it is
+    outgrown. Units: `k_max` and `error` 1/L, `growth_rate` V/L,
     `phase_speed` V.
 
     >>> from stability import flows, k_max
@@ -60,8 +62,9 @@ class Optimum(Record):
 
     flow: Any
     maxima: tuple[Maximum, ...]
-    status: str
+    status: Status
     settings: Mapping[str, Any] = field(default_factory=dict, compare=False)
+    strips: tuple[Strip, ...] = field(default=(), compare=False)
     dimension: ClassVar[str] = "flow"
     bounded: ClassVar[str] = "k_max"
 
@@ -195,13 +198,13 @@ class Optima(Record):
         return {**columns, "maxima_k": maxima[0], "maxima_growth_rate": maxima[1]} if most else columns
 
     def notes(self) -> list[str]:
-        ahead = [optimum.flow for optimum in self.optima if is_outgrown(optimum.status)]
+        ahead = [optimum for optimum in self.optima if is_outgrown(optimum.status)]
         if not ahead:
             return []
         where = f" at {len(ahead)} of {len(self.optima)} values of {self.over}, first here" if self.over else ""
-        strips = "; ".join(map(str, well_posedness(ahead[0]).strips))
+        strips = "; ".join(map(str, ahead[0].strips))
         why = f": {strips}" if strips else ""
-        return [naming(ahead[0], f"an internal mode outgrows the surface mode at k_max{where}{why}")]
+        return [naming(ahead[0].flow, f"an internal mode outgrows the surface mode at k_max{where}{why}")]
 
     def about(self) -> dict[str, Any]:
         return {"over": self.over} if self.over else {}
@@ -240,13 +243,13 @@ def k_max_sweep(flows: "Iterable[Flow]", search: tuple[float, float] | None = No
 
     Flows with the same equations share their matrices (dunes at different Re, say).
     """
-    tolerance, max_degree = check_accuracy(tolerance, max_degree)
+    accuracy = check_accuracy(tolerance, max_degree)
     search = None if search is None else check_range(search, "search")
     mode = None if mode is None else check_options("mode", mode, MODES)
     assembly = None
     for flow in flows:
         assembly = assembly.serving(flow) if assembly else Assembly(flow)
-        yield _optimum(Solver(flow, tolerance, max_degree, assembly), search, mode or default_mode(flow))
+        yield _optimum(Solver(flow, accuracy, assembly), search, mode or default_mode(flow))
 
 
 @one_thread
@@ -254,22 +257,23 @@ def _optimum(solver, search, mode):
     if mode == "surface" and not solver.flow.has_surface_mode():
         solver.flow.long_wave(1.0)  # says so
     low, high = search or search_of(solver.flow, mode)
-    settings = {"mode": mode, "tolerance": solver.tolerance, "max_degree": solver.degrees[-1]}
+    settings = {"mode": mode, **solver.accuracy.settings}
     if solver.flow.decays:
         return Optimum(solver.flow, (), _stable("leading", high), settings)
     try:
-        looks = [surface_look(solver, low, high)] if solver.flow.has_surface_mode() else []
+        looks = [surface_look(solver, low, high, growing=True)] if solver.flow.has_surface_mode() else []
         looks += [look(solver, low, high)] if mode == "leading" else []
     except ModeLost as reason:
-        return Optimum(solver.flow, (), str(reason), settings)
+        return Optimum(solver.flow, (), unresolved(reason), settings)
     found, lost = _maxima(solver, [pair for one in looks for pair in one.brackets])
     inside = [one for one in found if search is None or low <= one.k <= high]
     maxima = _distinct(sorted(inside, key=lambda one: -one.growth_rate))
     doubt = lost or (_outdone(solver, maxima[0]) if maxima and mode == "leading" else None)
     status = doubt or _status(solver, looks, found, maxima, mode, low, high)
+    strips = ()
     if mode == "surface" and maxima and faster(solver, maxima[0].mode):
-        status = outgrown(status)
-    return Optimum(solver.flow, tuple(maxima), status, settings)
+        status, strips = outgrown(status), ill_posed_strips(solver.flow)
+    return Optimum(solver.flow, tuple(maxima), status, settings, strips)
 
 
 def _maxima(solver, brackets):
@@ -280,7 +284,7 @@ def _maxima(solver, brackets):
             try:
                 found.append(crest(solvers[left.flow], left, right))
             except ModeLost as reason:
-                lost = str(reason)
+                lost = unresolved(reason)
     return [maximum for maximum in found if maximum.growth_rate > 0], lost
 
 
@@ -289,10 +293,10 @@ def _outdone(solver, best):
     try:
         known = listed(solver, best.k, 1)
     except ModeLost as reason:
-        return str(reason)
+        return unresolved(reason)
     first = known.modes[0]
     if first.growth_rate > best.growth_rate + first.error + best.mode.error:
-        return f"another mode grows at {first.growth_rate:.6g} at k = {best.k:.6g}"
+        return unresolved(f"another mode grows at {first.growth_rate:.6g} at k = {best.k:.6g}")
     return None if known.sure else known.status[0]
 
 
@@ -315,7 +319,7 @@ def _status(solver, looks, found, maxima, mode, low, high):
     """Whether the largest maximum is known to be the answer, or why not."""
     trouble = [one.trouble for one in looks if one.trouble]
     if trouble:
-        return trouble[0]
+        return unresolved(trouble[0])
     best = maxima[0].growth_rate if maxima else 0.0
     ends = [[_properly(solver, node) for one in looks for node in one.ends[side] if node.growth_rate > best]
             for side in (0, 1)]
@@ -323,12 +327,13 @@ def _status(solver, looks, found, maxima, mode, low, high):
     above = [node for node in ends[1] if node.slope.real > 0 and node.growth_rate > best + node.error]
     outside = [one for one in found if one not in maxima and one.growth_rate > best]
     if above:
-        return f"growth still rises at k = {high:g}, the end of the search"
+        return unresolved(f"growth still rises at k = {high:g}, the end of the search")
     if outside or below:
-        return f"growth is larger at k = {min([*outside, *below], key=lambda one: one.k).k:.6g}, outside of the search"
+        larger = min([*outside, *below], key=lambda one: one.k)
+        return unresolved(f"growth is larger at k = {larger.k:.6g}, outside of the search")
     return maxima[0].status if maxima else _stable(mode, high)
 
 
 def _stable(mode, high):
     which = "the surface mode does not grow" if mode == "surface" else "no waves grow"
-    return f"{STABLE}: {which} for k up to {high:g}"
+    return Status(Kind.STABLE, f"{which} for k up to {high:g}")

@@ -6,9 +6,10 @@ modes then grow ever faster with k, while the slow surface mode need not notice:
 
 from dataclasses import dataclass
 
+from ..modes.accuracy import DEGREES
 from ..modes.dense import finite_rates
-from ..modes.short_waves import well_posedness
-from ..modes.solver import DEGREES, Solver
+from ..modes.short_waves import ill_posed_somewhere, ill_posed_strips
+from ..modes.solver import Solver
 from ..numerics.threads import one_thread
 
 _CHECK_DEGREE = 16, 96  # least and largest of the look for a faster mode; between them that of the surface mode
@@ -43,8 +44,7 @@ def outgrown(relation):
     wavenumbers of the relation are bisected.
     """
     modes = sorted(relation.modes, key=lambda mode: mode.k)
-    strips = well_posedness(relation.flow).strips if modes and relation.mode == "surface" else ()
-    if not strips:
+    if not (modes and relation.mode == "surface" and ill_posed_somewhere(relation.flow)):
         return None
     solver = Solver(relation.flow)
     rates = {}
@@ -57,7 +57,8 @@ def outgrown(relation):
     if above == len(modes):
         return None
     degrees, (coarse, fine) = zip(*rates[above].items(), strict=True)
-    return Outgrown(modes[above].k, fine if abs(fine - coarse) < _SETTLED * abs(fine) else None, degrees, strips)
+    rate = fine if abs(fine - coarse) < _SETTLED * abs(fine) else None
+    return Outgrown(modes[above].k, rate, degrees, ill_posed_strips(relation.flow))
 
 
 def faster(solver, mode):

@@ -6,13 +6,14 @@ be biorthogonal partners, as in `modes.tracking`.
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import isinf
+from math import inf, isinf
 from typing import Any
 
 import numpy as np
 
 from ..errors import ModeLost, ParameterError
 from ..modes.solver import Solver
+from ..numerics.walker import Pace, Walker
 from .sensitivity import Derivative
 
 _OVERLAP = 0.5  # largest deviation of the overlap of one step from 1
@@ -57,20 +58,20 @@ class Point:
 class Plane:
     """Modes of one symmetry class of `flow` at any wavenumber and any value of its parameter `vary`.
 
-    `half` tells which of `flow.halves()` is meant; `tolerance` is relative, error bars are computed with `bars`.
+    `half` tells which of `flow.halves()` is meant; error bars are computed with `bars`.
     """
 
-    def __init__(self, flow, vary, tolerance, max_degree, half=0, bars=True):
+    def __init__(self, flow, vary, accuracy, half=0, bars=True):
         if isinf(getattr(flow, vary)):
             raise ParameterError(f"{flow.name}: {vary} = inf cannot be varied; start from a finite {vary}")
         self.flow, self.vary, self.half = flow, vary, half
-        self.tolerance, self.max_degree, self._bars = tolerance, max_degree, bars
+        self.accuracy, self._bars = accuracy, bars
         self.power = 2 if flow.has_surface_mode() else 0  # growth of long waves is of the order of k^power
         self._solvers, self._derivatives = {}, {}
 
     def rough(self, tolerance):
         """The same plane, no more accurate than this."""
-        return Plane(self.flow, self.vary, max(self.tolerance, tolerance), self.max_degree, self.half, bars=False)
+        return Plane(self.flow, self.vary, self.accuracy.rougher(tolerance), self.half, bars=False)
 
     def flow_at(self, value):
         """The whole flow at a value; raises ParameterError where there is none."""
@@ -84,7 +85,7 @@ class Plane:
             assembly = last.assembly.serving(flow) if last else None
             if len(self._solvers) == _KEPT:
                 self._solvers.pop(next(iter(self._solvers)))
-            self._solvers[value] = Solver(flow, self.tolerance, self.max_degree, assembly, self._bars)
+            self._solvers[value] = Solver(flow, self.accuracy, assembly, self._bars)
         return self._solvers[value]
 
     def derivative(self, value):
@@ -106,31 +107,47 @@ class Plane:
 
     def move(self, start, k, value, halvings=_HALVINGS):
         """The mode of `start` at another point; in several steps, halved so often, where one would not be safe."""
-        at, reached, step = start, 0.0, 1.0
+        walk = _Move(self, start, k, value, 0.5**halvings)
         for _ in range(4 * halvings):
-            ahead = min(1.0, reached + step)
-            point = self._step(at, start.k * (k / start.k) ** ahead if ahead < 1 else k,
-                               start.value + (value - start.value) * ahead if ahead < 1 else value)
-            if point is None:
-                step /= 2
-                if step < 0.5**halvings:
-                    break
-            elif ahead == 1:
-                return point
-            else:
-                at, reached, step = point, ahead, 2 * step
+            ahead = min(1.0, walk.reached + walk.step)
+            if walk.stride(ahead, ahead - walk.reached) and ahead == 1:
+                return walk.now
+            if walk.stuck:
+                break
         raise ModeLost(f"{start.mode.flow}: the mode is lost between k = {start.k:.6g} and {k:.6g}, "
                        f"{self.vary} = {start.value:.6g} and {value:.6g}")
 
-    def _step(self, start, k, value):
-        """The mode of `start` at a nearby point, or None where it is not safely the same."""
-        solver, old = self.solver(value), start.mode
-        change = old.slope * (k - start.k)
-        if value != start.value:
-            change += start.by_value * (value - start.value)
+
+class _Move(Walker):
+    """The way from a point of a plane to another one, 0 to 1 of it."""
+
+    checks = ("overlaps",)
+
+    def __init__(self, plane, start, k, value, smallest):
+        super().__init__(Pace(1.0, inf, smallest, 2.0))
+        self.plane, self.start, self.end = plane, start, (k, value)
+        self.now, self.reached = start, 0.0
+
+    def foresee(self, to):
+        """k, value and sigma at a part of the way."""
+        start, (k, value), now = self.start, self.end, self.now
+        if to < 1:
+            k, value = start.k * (k / start.k) ** to, start.value + (value - start.value) * to
+        change = now.mode.slope * (k - now.k)
+        if value != now.value:
+            change += now.by_value * (value - now.value)
+        return k, value, now.mode.sigma + change
+
+    def correct(self, to, guess):
+        k, value, sigma = guess
+        solver, old = self.plane.solver(value), self.now.mode
         degree = old.degree if old.degree in solver.degrees else solver.degrees[-1]
-        try:
-            mode = solver.solve(k, (old.sigma + change) / solver.width(k), (old.degree, old.x, old.y), degree)
-        except ModeLost:
-            return None
-        return self.point(k, value, mode) if abs(solver.overlap(old, mode) - 1) < _OVERLAP else None
+        mode = solver.solve(k, sigma / solver.width(k), (old.degree, old.x, old.y), degree)
+        return self.plane.point(k, value, mode)
+
+    def overlaps(self, new, guess):
+        """Whether old and new eigenvectors are biorthogonal partners."""
+        return abs(self.plane.solver(new.value).overlap(self.now.mode, new.mode) - 1) < _OVERLAP
+
+    def accept(self, to, new):
+        self.now, self.reached = new, to

@@ -9,20 +9,20 @@ are a crest of their own: the sign of a in growth = a k^2 as k -> 0.
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise
-from math import copysign, exp, log
+from math import exp, log
 
 import numpy as np
 
 from ..errors import ModeLost, ParameterError
 from ..modes.branch import surface_mode
 from ..modes.crests import ROUGH, default_mode, look, middle_of, search_of, surface_look
+from ..numerics.walker import Pace, Walker, towards
 from .plane import Plane, Point
 
 _COLUMN = 0.7  # spacing of the columns, in the logarithm of the parameter
 _FEWEST = 12  # columns
 _TRIED = 300  # values at which it is asked whether the flow exists
-_ARC = 0.25  # largest step of a ridge in the logarithm of the parameter
-_SHORTEST = 1e-5  # and the smallest
+_PACE = Pace(0.25, 0.25, 1e-5)  # of a ridge, in the logarithm of the parameter
 BUDGET = 150  # steps along ridges where another one grows
 _FAILURES = 20  # steps of a ridge that may be refused
 _HALVINGS = 3  # of one step in k and the parameter: what needs more is refused
@@ -89,11 +89,11 @@ class Landscape:
     the steps along ridges where another one grows.
     """
 
-    def __init__(self, flow, vary, span, search, tolerance, max_degree):
+    def __init__(self, flow, vary, span, search, accuracy):
         self.flow, self.vary, self.span = flow, vary, span
         self.search = search or search_of(flow, default_mode(flow))
         halves = range(len(flow.halves()))
-        self.planes = [Plane(flow, vary, tolerance, max_degree, half) for half in halves]
+        self.planes = [Plane(flow, vary, accuracy, half) for half in halves]
         self.rough = [plane.rough(ROUGH) for plane in self.planes]
         self.columns, self.modes, self.spent = [], set(), 0
 
@@ -259,19 +259,27 @@ def settle(plane, point, bend):
 
 def ridge(plane, crest, value):
     """Yield crests from one to the one at another value; ends early where the ridge does."""
-    now, drift, step, refused = crest, 0.0, _ARC, 0
-    side = copysign(1.0, log(value / crest.value))
-    while now.value != value:
-        gap = abs(log(value / now.value))
-        new = _ahead(plane, now, value if gap <= step else now.value * exp(side * step), drift)
-        if new is None:
-            step, refused = min(step, gap) / 3, refused + 1
-            if step < _SHORTEST or refused > _FAILURES:
-                return
-            continue
-        drift = log(new.point.k / now.point.k) / log(new.value / now.value)
-        now, step = new, min(_ARC, 2 * step)
-        yield now
+    walk, refused = _Ridge(plane, crest), 0
+    while walk.now.value != value and not walk.stuck and refused <= _FAILURES:
+        if walk.stride(*towards(walk.now.value, value, walk.step)):
+            yield walk.now
+        else:
+            refused += 1
+
+
+class _Ridge(Walker):
+    """A crest followed along the parameter; `drift` is the slope of its log k."""
+
+    def __init__(self, plane, crest):
+        super().__init__(_PACE)
+        self.plane, self.now, self.drift = plane, crest, 0.0
+
+    def correct(self, to, guess):
+        return _ahead(self.plane, self.now, to, self.drift)
+
+    def accept(self, to, new):
+        self.drift = log(new.point.k / self.now.point.k) / log(new.value / self.now.value)
+        self.now = new
 
 
 def _ahead(plane, now, value, drift):

@@ -22,7 +22,7 @@ from ..output.panels import BARS, ELASTICITY, PARAMETER, Curve, Panel
 from ..output.record import Record
 from ..output.symbols import symbol_of, value_text
 from ..output.text import Row
-from ..status import NO_DERIVATIVE, is_resolved
+from ..status import Kind, Status, is_resolved, unresolved
 
 _STEP = 1e-5
 _STENCILS = {-1: -0.5, 1: 0.5}, {0: -1.5, 1: 2.0, 2: -0.5}, {0: 1.5, -1: -2.0, -2: 0.5}  # offsets: weights
@@ -40,7 +40,7 @@ class Slope:
     value: float
     slope: complex | None
     error: float | None
-    status: str
+    status: Status
 
 
 @dataclass(frozen=True, repr=False)
@@ -122,12 +122,12 @@ def _in_parameter(solver: Solver, mode: Mode, refined: Mode, name: str) -> Slope
     """The slope from sharpened vectors; that from those of the mode, with twice the step, bounds its error."""
     value = getattr(mode.flow, name)
     if isinf(value):
-        return Slope(name, value, None, None, f"{NO_DERIVATIVE}: {name} is infinite")
+        return Slope(name, value, None, None, Status(Kind.NO_DERIVATIVE, f"{name} is infinite"))
     try:
         fine = parameter_slope(solver, refined, name)
         coarse = parameter_slope(solver, mode, name, 2 * _STEP)
     except ParameterError as reason:
-        return Slope(name, value, None, None, f"{NO_DERIVATIVE}: {reason}")
+        return Slope(name, value, None, None, Status(Kind.NO_DERIVATIVE, str(reason)))
     scale = abs(value) or 1.0
     error = (_EIGENVALUE * mode.error + _ROUNDING * mode.rounding / _STEP) / scale
     return _slope(mode, name, value, complex(fine), _SAFETY * abs(fine - coarse) + error)
@@ -136,7 +136,7 @@ def _in_parameter(solver: Solver, mode: Mode, refined: Mode, name: str) -> Slope
 def _slope(mode: Mode, name: str, value: float, slope: complex, error: float) -> Slope:
     status = mode.status
     if is_resolved(status) and error > _TOLERANCE * max(abs(slope), abs(mode.sigma) / (abs(value) or 1.0)):
-        status = f"error {error:.1e} exceeds tolerance"
+        status = unresolved(f"error {error:.1e} exceeds tolerance")
     return Slope(name, value, slope, float(error), status)
 
 

@@ -1,7 +1,7 @@
 """The least stable modes at one wavenumber, as a result."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -9,16 +9,19 @@ import numpy as np
 from ..checks import check_flag, check_integer, check_wavenumber
 from ..errors import NotResolved
 from ..flows.base import check_flow
+from ..modes.accuracy import DEGREES, TOLERANCE, Accuracy, check_accuracy
 from ..modes.eigenvalue import Eigenvalues
+from ..modes.energy import condition_numbers
 from ..modes.listing import listed
 from ..modes.mode import Mode, require
-from ..modes.short_waves import well_posedness
-from ..modes.solver import DEGREES, TOLERANCE, Solver, check_accuracy
+from ..modes.short_waves import ill_posed_somewhere, ill_posed_strips
+from ..modes.solver import Solver
 from ..numerics.threads import one_thread
 from ..output.panels import GROWTH_RATE, PHASE_SPEED, POINTS, Curve, Panel
 from ..output.record import Record
 from ..output.text import Row, measured
-from ..status import INTERRUPTED, is_resolved
+from ..status import INTERRUPTED, Status, is_resolved
+from .dispersion import dispersion
 
 if TYPE_CHECKING:
     from ..flows import Flow
@@ -33,9 +36,10 @@ class Spectrum(Eigenvalues, Record):
     None is missing down to the last one, and none is there twice; or `status` says where that is not sure, and `doubt`
     why.
 
-    `flow`, `k` and `settings` are what was asked for, `modes` (modes,) hold a `Mode` each; arrays are (modes,). Units:
-    `sigma`, `growth_rate`, `error` V/L, `phase_speed` V, `condition` is a number. Writing raises ParameterError where a
-    file cannot be written.
+    `flow`, `k` and `settings` are what was asked for, `modes` (modes,) hold a `Mode` each; arrays are (modes,), as are
+    the condition numbers of the eigenvalues in the energy norm, `condition`. `remarks` are what the model says of
+    itself. Units: `sigma`, `growth_rate`, `error` V/L, `phase_speed` V, `condition` is a number. Writing raises
+    ParameterError where a file cannot be written.
 
     >>> from stability import flows, spectrum
     >>> found = spectrum(flows.Couette(Re=1000.0), 1.0, 2)
@@ -47,8 +51,10 @@ class Spectrum(Eigenvalues, Record):
     k: float
     modes: tuple[Mode, ...]
     settings: Mapping[str, Any] = field(default_factory=dict, compare=False)
-    status: tuple[str, ...] = ()  # type: ignore[assignment]
+    status: tuple[Status, ...] = ()  # type: ignore[assignment]
     doubt: str | None = None
+    condition: tuple[float, ...] = field(default=(), compare=False)
+    remarks: tuple[str, ...] = field(default=(), compare=False)
     dimension: ClassVar[str] = "mode"
 
     def panels(self) -> tuple[Panel, ...]:
@@ -56,17 +62,14 @@ class Spectrum(Eigenvalues, Record):
 
     def rows(self) -> list[Row]:
         """Return a row of each mode; `condition` is the condition number of the eigenvalue in the energy norm."""
-        from ..modes.energy import condition_numbers
-
-        numbers = condition_numbers(self.modes).tolist()
         return [{**{name: row[name] for name in row if name != "status"}, "condition": number, "status": row["status"]}
-                for row, number in zip(self._summary(), numbers, strict=True)]
+                for row, number in zip(self._summary(), self.condition, strict=True)]
 
     def columns(self) -> dict[str, np.ndarray]:
         return {**super().columns(), "sigma": self.sigma, "slope": np.array([mode.slope for mode in self.modes])}
 
     def notes(self) -> list[str]:
-        return _notes([self])
+        return [*_doubts([self]), *self.remarks]
 
     def about(self) -> dict[str, Any]:
         return {"k": self.k}
@@ -84,6 +87,7 @@ class Spectra(Record):
     flow: Any
     spectra: tuple[Spectrum, ...]
     missing: tuple[float, ...] = ()
+    remarks: tuple[str, ...] = field(default=(), compare=False)
     dimension: ClassVar[str] = "mode"
 
     @property
@@ -98,7 +102,7 @@ class Spectra(Record):
         return rows + [dict.fromkeys(rows[0]) | {"k": k, "status": INTERRUPTED} for k in self.missing]
 
     def notes(self) -> list[str]:
-        return _notes(self.spectra)
+        return [*_doubts(self.spectra), *self.remarks]
 
 
 def _panels(spectra):
@@ -108,35 +112,35 @@ def _panels(spectra):
     return (Panel(PHASE_SPEED, GROWTH_RATE, tuple(curves), zero="y"),)
 
 
-def _notes(spectra):
-    doubts = [f"{one.flow}, k = {one.k:g}: {one.doubt}" for one in spectra if one.doubt]
-    return [*doubts, *_ill_posed(list(spectra))]
+def _doubts(spectra):
+    return [f"{one.flow}, k = {one.k:g}: {one.doubt}" for one in spectra if one.doubt]
 
 
-def _ill_posed(spectra: list[Spectrum]) -> list[str]:
-    """What an ill-posed flow does to its spectra: modes that do not converge, internal modes that lead it."""
-    from .dispersion import dispersion
-    from .outgrown import outgrown
+def ill_posed_remarks(spectra: Sequence[Spectrum], rivals: bool = True) -> tuple[str, ...]:
+    """What an ill-posed flow does to its spectra: modes that do not converge, internal modes that lead it.
 
+    The latter takes time, and is looked at where `rivals` is true.
+    """
     flow = spectra[0].flow
-    strips = well_posedness(flow).strips
-    if not strips:
-        return []
-    notes = [f"{flow}, k = {one.k:g}: the spectrum does not converge; {'; '.join(map(str, strips))}"
-             for one in spectra if not all(is_resolved(mode.status) for mode in one.modes)]
-    wavenumbers = [one.k for one in spectra]
-    faster = outgrown(dispersion(flow, wavenumbers, strict=False)) if flow.has_surface_mode() else None
-    return [*notes, f"{flow}: {faster}"] if faster else notes
+    if not ill_posed_somewhere(flow):
+        return ()
+    moving = [one.k for one in spectra if not all(is_resolved(mode.status) for mode in one.modes)]
+    strips = "; ".join(map(str, ill_posed_strips(flow))) if moving else ""
+    notes = [f"{flow}, k = {k:g}: the spectrum does not converge; {strips}" for k in moving]
+    if not (rivals and flow.has_surface_mode()):
+        return tuple(notes)
+    faster = dispersion(flow, [one.k for one in spectra], strict=False, rivals=True).rival
+    return (*notes, f"{flow}: {faster}") if faster else tuple(notes)
 
 
-@one_thread
 def spectrum(flow: "Flow", k: float, modes: int = 10, *, tolerance: float = TOLERANCE, max_degree: int = DEGREES[-1],
-             strict: bool = True) -> Spectrum:
+             strict: bool = True, rivals: bool = False) -> Spectrum:
     """Return the `modes` least stable modes at wavenumber k, each refined to its own degree with an error bar.
 
     Symmetry classes are solved apart, and the modes above the last one are counted by the argument principle (see
     `modes.listing`). Raises NotResolved if one of them is not resolved within `max_degree` or others may be
-    missing; with strict=False the status says so instead.
+    missing; with strict=False the status says so instead. With `rivals` a note tells whether an internal mode of an
+    ill-posed flow outgrows the surface mode.
 
     `k` is in 1/L, growth rates in V/L. Raises ParameterError for what is no flow, wavenumber or number of modes.
 
@@ -144,16 +148,26 @@ def spectrum(flow: "Flow", k: float, modes: int = 10, *, tolerance: float = TOLE
     >>> print(spectrum(flows.Poiseuille(Re=1e4), 1.0, 3).growth_rate.round(8))  # Orszag (1971): 0.00373967 leads
     [ 0.00373967 -0.03516728 -0.03518658]
     """
-    strict = check_flag("strict", strict)
+    strict, rivals = check_flag("strict", strict), check_flag("rivals", rivals)
     k, modes = check_wavenumber(k), check_integer(modes, "modes", 1, MOST)
-    tolerance, max_degree = check_accuracy(tolerance, max_degree)
-    solver = Solver(check_flow(flow), tolerance, max_degree)
-    found = listed(solver, k, modes)
+    (found,) = spectra(check_flow(flow), [k], modes, check_accuracy(tolerance, max_degree))
     if strict:
-        for mode in found.modes[:modes]:
+        for mode in found.modes:
             require(mode)
-        if found.sure < modes:
+        if found.doubt:
             raise NotResolved(f"{flow}, k={k:g}: {found.doubt}")
-    settings = {"tolerance": tolerance, "max_degree": max_degree}
-    return Spectrum(flow, k, found.modes[:modes], settings, found.status[:modes],
-                    found.doubt if found.sure < modes else None)
+    return replace(found, remarks=ill_posed_remarks([found], rivals))
+
+
+def spectra(flow: "Flow", wavenumbers: Sequence[float], modes: int, accuracy: Accuracy) -> Iterator[Spectrum]:
+    """Yield the `Spectrum` at each wavenumber, not strict and without remarks (`ill_posed_remarks`)."""
+    for k in wavenumbers:
+        yield _spectrum(Solver(flow, accuracy), k, modes)
+
+
+@one_thread
+def _spectrum(solver, k, count):
+    found = listed(solver, k, count)
+    modes = found.modes[:count]
+    return Spectrum(solver.flow, k, modes, solver.accuracy.settings, found.status[:count],
+                    found.doubt if found.sure < count else None, tuple(condition_numbers(modes, solver).tolist()))

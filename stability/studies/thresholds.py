@@ -13,7 +13,7 @@ import numpy as np
 
 from ..errors import ModeLost, ParameterError
 from ..modes.response import error_of_zero
-from ..status import RESOLVED, is_resolved
+from ..status import RESOLVED, Status, is_resolved, unresolved
 from .ridges import BUDGET, Landscape, narrowed
 
 _ITERATIONS = 20
@@ -40,7 +40,7 @@ class Zero:
     mode: object
     error: float
     k_error: float
-    status: str
+    status: Status
     rise: float
     data_error: float | None = None  # standard error of the value from that of a measured base flow
 
@@ -81,7 +81,7 @@ def _noses(land):
             yield nose(plane, crest)
         except (ModeLost, ParameterError) as reason:
             yield Zero(crest.point.k, crest.value, crest.point.mode, abs(a.value - b.value), abs(a.point.k - b.point.k),
-                       str(reason), (b.growth - a.growth) * (b.value - a.value))
+                       unresolved(reason), (b.growth - a.growth) * (b.value - a.value))
 
 
 def _beside_thresholds(land, thresholds):
@@ -145,8 +145,8 @@ def _jacobian(plane, point):
 def zero_at(point, error, k_error, plane):
     """The `Zero` at a point, resolved where the error of its value is small."""
     status = point.mode.status
-    if is_resolved(status) and not error <= max(plane.tolerance, _VALUE_TOLERANCE) * abs(point.value):
-        status = f"error {error:.1e} of {plane.vary} exceeds tolerance"
+    if is_resolved(status) and not error <= max(plane.accuracy.tolerance, _VALUE_TOLERANCE) * abs(point.value):
+        status = unresolved(f"error {error:.1e} of {plane.vary} exceeds tolerance")
     slope = point.by_value.real
     return Zero(point.k, point.value, point.mode, float(error), float(k_error), status, slope,
                 error_of_zero(plane.solver(point.value), point.mode, slope))
@@ -157,7 +157,7 @@ def _threshold(one, other):
     slope = (other.a - one.a) / (other.value - one.value)
     best = min(one, other, key=lambda known: abs(known.a))
     error = (abs(best.a) + best.spread) / abs(slope)
-    status = RESOLVED if error <= 1e-7 * abs(best.value) else f"error {error:.1e} exceeds tolerance"
+    status = RESOLVED if error <= 1e-7 * abs(best.value) else unresolved(f"error {error:.1e} exceeds tolerance")
     return Zero(0.0, best.value, best.mode, float(error), 0.0, status, slope)
 
 
@@ -209,8 +209,8 @@ def _doubted(land, zeros):
     side = np.sign(first.value - stable[0].value)
     doubtful = [column for column in land.columns if column.trouble and side * (first.value - column.value) > 0]
     if doubtful and is_resolved(first.status):
-        first = replace(first, status=f"others may come first: at {land.vary} = {doubtful[0].value:.4g}, "
-                                      f"{doubtful[0].trouble}")
+        first = replace(first, status=unresolved(f"others may come first: at {land.vary} = {doubtful[0].value:.4g}, "
+                                                 f"{doubtful[0].trouble}"))
     return first, *others
 
 

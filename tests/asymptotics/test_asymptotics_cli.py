@@ -14,7 +14,7 @@ import sympy as sp
 
 from asymptotics import __version__ as asymptotics_version
 from asymptotics import assert_order, cli, expand, flows
-from asymptotics.limits import OrderMismatch, TooFewPoints
+from asymptotics.comparison import OrderMismatch, TooFewPoints
 from stability import __version__ as stability_version
 from stability import dispersion
 from stability.cli import main as stability

@@ -9,7 +9,9 @@ import pytest
 import sympy as sp
 
 from asymptotics import expand
-from asymptotics.limits import LimitMismatch, OrderMismatch, TooFewPoints, assert_limit, assert_order, compare
+from asymptotics.comparison import LimitMismatch, OrderMismatch, TooFewPoints
+from asymptotics.leading import assert_limit
+from asymptotics.limits import assert_order, compare
 from stability import dispersion, flows
 
 K = np.geomspace(1e-3, 1e-1, 9)
@@ -237,22 +239,71 @@ def test_frames_of_ours_are_hidden():
     (lambda k: k + 1j * k, 0), (lambda k: 0 * k, 0), (lambda k: -0.4 + math.sqrt(k), -0.4),
 ])
 def test_limits(function, limit):
-    assert assert_limit(function, limit, K) == pytest.approx(1 if limit else 0, abs=1e-4)
+    found = assert_limit(function, limit, K)
+    for one, name in zip(found, ("real", "imag"), strict=True):
+        expected = getattr(complex(limit), name)
+        assert one.value == pytest.approx(expected, abs=1e-4)
+        assert abs(one.value - expected) <= 5 * one.error + 1e-15
     for wrong in (limit * 1.01, limit * 0.99) if limit else (0.01, -0.01):
-        with pytest.raises(LimitMismatch, match="as k -> 0, not to 1"):
+        with pytest.raises(LimitMismatch, match="expected .*, off by"):
             assert_limit(function, wrong, K)
 
 
-def test_the_limit_of_an_expansion_is_its_leading_term(film):
+def test_the_limits_of_an_expansion_are_the_first_coefficients_of_each_part(film):
     law = expand("film", order=2, **FILM)
-    assert assert_limit(film.sigma, law, WIDE, error=film.error) == pytest.approx(1, abs=5e-4)
-    assert assert_limit(film.growth_rate / WIDE**2, 8 / 15 * 0.75, WIDE) == pytest.approx(1, abs=1e-3)
-    with pytest.raises(LimitMismatch, match="numeric/expected tends to 1.00"):
+    found = assert_limit(film.sigma, law, WIDE, error=film.error)
+    assert (found.real.power, found.imag.power) == (2, 1)
+    assert found.real.value == pytest.approx(8 / 15 * 0.75 * 1, rel=1e-3)
+    assert found.imag.value == pytest.approx(-2, rel=1e-3)
+    assert assert_limit(film.growth_rate / WIDE**2, 8 / 15 * 0.75, WIDE).real.power == 0
+    with pytest.raises(LimitMismatch, match=r"^real part: .* off by 0.5 %; imaginary part: .* -2.0.*off by 0.5 %"):
         assert_limit(film.sigma * 1.005, law, WIDE, error=film.error)
 
 
+@pytest.mark.parametrize("scalar", [False, True])
+def test_a_wrong_growth_rate_does_not_hide_behind_the_speed(scalar):
+    """Of a film at 45 degrees the real part is a hundredth of the imaginary one at the smallest k."""
+    law = expand("film", order=3, Re=10, slope_deg=45, We=0)
+
+    def sigma(k, factor=1.0):
+        found = dispersion(flows.Film(Re=10, slope_deg=45), k).sigma
+        return factor * found.real + 1j * found.imag
+
+    def wrong(k):
+        return complex(sigma(k, 1.005)[0]) if scalar else sigma(k, 1.005)
+
+    k = np.geomspace(0.01, 0.3, 12)
+    assert_limit(sigma, law, k)
+    assert_limit(wrong, law, k, part="imag")
+    for part in "real", "both":
+        with pytest.raises(LimitMismatch, match=r"^real part: the coefficient of k\^2 is 4.689.*off by 0.49") as found:
+            assert_limit(wrong, law, k, part=part)
+        assert "imaginary" not in str(found.value)
+        with pytest.raises(OrderMismatch, match=r"real part .*coefficient of k\^2 differs by 0.02"):
+            assert_order(wrong, law, k, part=part)
+
+
+def test_a_right_law_is_told_from_a_wrong_one_by_its_real_part_alone():
+    law = expand("film", order=3, Re=10, slope_deg=45, We=0)
+    k = np.geomspace(0.01, 0.3, 12)
+    sigma = dispersion(flows.Film(Re=10, slope_deg=45), k).sigma
+    for part, order in ("real", 4.0), ("imag", 5.0), ("both", 4.0):
+        with pytest.raises(OrderMismatch, match="k is too large for this expansion") as failure:
+            assert_order(sigma, law, k, part=part)
+        assert failure.value.comparison.expected == order
+
+
 def test_k_too_large_for_a_limit():
-    with pytest.raises(LimitMismatch):
-        assert_limit(lambda k: np.cos(9 * k), 1, np.linspace(1, 3, 9))
+    for function, limit in (lambda k: np.cos(9 * k), 1), (lambda k: 1 / (1 + k**2), 1):
+        with pytest.raises(LimitMismatch, match="k is too large to tell the limit"):
+            assert_limit(function, limit, np.linspace(1, 3, 9))
+    sigma = dispersion(flows.Film(Re=10, slope_deg=45), np.geomspace(1, 30, 12)).sigma
+    with pytest.raises(LimitMismatch, match="too large .*real.*too large .*imag"):
+        assert_limit(sigma, expand("film", order=3, Re=10, slope_deg=45, We=0), np.geomspace(1, 30, 12))
     with pytest.raises(TooFewPoints, match="4 are needed"):
         assert_limit(cosine, 1, [0.1, 0.2, 0.3])
+
+
+def test_a_limit_of_another_part_is_refused():
+    with pytest.raises(ValueError, match="part must be one of real, imag, both"):
+        assert_limit(cosine, 1, K, part="modulus")

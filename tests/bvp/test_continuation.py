@@ -18,6 +18,7 @@ from stability.bvp.thesis import RegularisedVortex, thesis_setting
 from stability.cli import main
 from stability.equations.layer import Layer
 from stability.errors import NotResolved, ParameterError
+from stability.numerics.walker import Pace
 
 WAVENUMBERS = np.geomspace(1e-2, 5, 4)
 GIVEN_UP = {"vortex": 12, "dune": 4}  # of 80 points each, with the seed below
@@ -181,13 +182,16 @@ def test_collocation_imports_no_bvp_solver():
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, check=False).returncode == 0
 
 
-def test_step_control_is_what_keeps_the_mode(monkeypatch):
-    """Near k = 1 two real modes of this flow pass within 7 % of each other: long unchecked steps cross over."""
-    flow = flows.Vortex(slope_deg=21.215735, Fr2=0.77673)
+CLOSE, NEAR = flows.Vortex(slope_deg=21.215735, Fr2=0.77673), flows.Vortex(slope_deg=21.2, Fr2=0.76)
+
+
+@pytest.mark.parametrize(("flow", "checks", "keeps"), [
+    (CLOSE, ("changes_little", "bends_little"), True), (CLOSE, (), False),
+    (NEAR, ("bends_little",), True), (NEAR, ("changes_little",), True), (NEAR, (), False)])
+def test_each_check_of_a_step_keeps_the_mode_by_itself(monkeypatch, flow, checks, keeps):
+    """Near k = 1 two real modes of these flows pass close to each other: long unchecked steps cross over."""
     exact = dispersion(flow, 2.0).sigma[0]
+    monkeypatch.setattr(continuation, "_PACE", Pace(0.5, 0.5, 4e-3))
+    monkeypatch.setattr(continuation._Walk, "checks", checks)
     (point,) = continue_in_k(flow, [2.0]).points
-    assert abs(point.sigma - exact) < 1e-8 * abs(exact)
-    for name in ("_CHANGE", "_BEND", "_LARGEST_STEP", "_FIRST_STEP"):
-        monkeypatch.setattr(continuation, name, 1.0)
-    (point,) = continue_in_k(flow, [2.0]).points
-    assert abs(point.sigma - exact) > abs(exact)
+    assert (abs(point.sigma - exact) < 1e-8 * abs(exact)) == keeps

@@ -21,8 +21,9 @@ from stability.bvp.thesis import thesis_setting
 from stability.equations.layer import Layer, Profile
 from stability.errors import NotSmooth
 from stability.flows.wavy_wall import response
+from stability.modes.accuracy import DEGREES
 from stability.modes.dense import finite_rates
-from stability.modes.solver import DEGREES, Solver
+from stability.modes.solver import Solver
 from stability.numerics import chebyshev, smooth
 
 VORTEX, DUNE = flows.Vortex(slope_deg=30.0, Fr2=0.1), flows.Dune(shields=2.0, mu1=0.4, b=1.0, Re=10.0)

@@ -14,9 +14,10 @@ from stability import ParameterError, StabilityError, dispersion, flows, k_max, 
 from stability.checks import LARGEST, check_wavenumbers
 from stability.cli.specs import parse_spec
 from stability.flows import FLOWS
+from stability.modes.accuracy import Accuracy
 from stability.modes.solver import Solver
 from stability.numerics.angles import cot_deg
-from stability.studies.neutral import critical
+from stability.studies.critical import critical
 
 SEED, POINTS, TRUTH = 9, 30, 4
 STEADY = {"pile", "annulus"}  # flows without waves
@@ -187,7 +188,7 @@ def test_stresses_of_very_viscous_layers_leave_the_other_unknowns_their_digits(f
 @pytest.mark.parametrize("degree", [16, 24, 32, 40])
 def test_truncation_errors_of_short_waves_hold(degree):
     """Near the truncation the left vector is itself wrong: the rows before must bound what lies beyond."""
-    solver = Solver(flows.Couette(Re=2.91229110201458e-08), 1.0, degree)
+    solver = Solver(flows.Couette(Re=2.91229110201458e-08), Accuracy(1.0, degree))
     solver.degrees = (degree,)
     mode = solver.solve(40.69240602656987, -1.39945e9, None, degree)
     exact = -56947093381.57407447  # power series

@@ -44,7 +44,8 @@ def test_what_grows_at_every_value_says_so(capsys):
     assert "unstable at every Re from 1 to 3" in out
 
 
-@pytest.mark.parametrize("words", [("--help",), ("--version",), ("dance",), (), ("dispersion", "--nonsense")], ids=str)
+@pytest.mark.parametrize("words", [("--help",), ("--version",), ("dance",), (), ("flows",), ("flows", "dune"),
+                                   ("flows", "fun"), ("dispersion", "--nonsense")], ids=str)
 def test_what_needs_no_numerics_imports_none(words):
     code = ("import sys; from stability.cli import main\n"
             f"try: main({list(words)!r})\nexcept SystemExit: pass\n"

@@ -5,7 +5,7 @@ import pytest
 from twins import wrong_coefficient, wrong_condition
 
 from stability import ParameterError, dispersion, flows, spectrum
-from stability.studies.neutral import critical
+from stability.studies.critical import critical
 
 SLOPES = (5.0, 20.0, 45.0, 70.0, 88.0)
 

@@ -13,7 +13,7 @@ from scipy.io import netcdf_file
 from stability import dispersion, flows, k_max, spectrum
 from stability.cli import main
 from stability.errors import ParameterError
-from stability.studies.neutral import critical
+from stability.studies.critical import critical
 
 OPEN = {"bottom": "decay", "top": "decay"}
 BRUTE_FORCE = bool(os.environ.get("STABILITY_BRUTE_FORCE"))
@@ -164,7 +164,8 @@ def test_columns(capsys, tmp_path):
     path = written(tmp_path / "table.csv", z, 1 - z**2, np.full(41, 1e-3))
     base = ["--profile", path]
     _, rows, header, _ = run(capsys, "dispersion", "shear", *base, "--k", "1")
-    assert list(rows[0]) == ["k", "growth_rate", "phase_speed", "error", "data_error", "degree", "status"]
+    assert list(rows[0]) == ["k", "growth_rate", "phase_speed", "error", "group_speed", "group_error", "data_error",
+                             "degree", "status"]
     assert "sha256" in header["parameters"]["profile"]
     _, rows, _, _ = run(capsys, "spectrum", "shear", *base, "--k", "1", "--modes", "2")
     assert rows[0]["data_error"] > 0

@@ -11,6 +11,7 @@ from typing import ClassVar
 import pytest
 
 from stability import cli, dispersion, flows, spectrum
+from stability.cli.command import parser_of
 from stability.cli.verbs import VERBS
 from stability.errors import ParameterError
 from stability.flows import contract, sources
@@ -114,7 +115,7 @@ def test_workers_find_the_file(capsys, tmp_path):
 def test_a_map_is_not_resumed_with_another_version(capsys, tmp_path, file):
     name, out = file(), tmp_path / "map.csv"
     command = "map", name, "--over", "Re=10,20", "--k", "0.2", "-o", out, "--workers", "1"
-    request = cli._parser([str(word) for word in command]).parse_args([str(word) for word in command])
+    request = parser_of([str(word) for word in command]).parse_args([str(word) for word in command])
     from stability.cli.verbs.map import _request
     from stability.studies.map import carry_out
 
@@ -283,6 +284,6 @@ def test_the_flows_of_the_package_keep_the_contract(name):
 
 
 def test_no_parameter_can_be_named_like_an_option():
-    taken = {action.dest for verb in VERBS for action in cli._parser([verb])._subparsers._group_actions[0].choices[
+    taken = {action.dest for verb in VERBS for action in parser_of([verb])._subparsers._group_actions[0].choices[
         verb]._actions}
     assert taken - {"parameters"} <= contract.OPTIONS

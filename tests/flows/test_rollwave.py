@@ -5,7 +5,8 @@ import pytest
 from twins import table, wrong_coefficient, wrong_condition
 
 from stability import ParameterError, dispersion, flows, spectrum
-from stability.studies.neutral import critical, neutral_curve
+from stability.studies.critical import critical
+from stability.studies.neutral import neutral_curve
 
 WELL_POSED = (22.0, 24.0, 26.0, 28.0, 30.0)
 

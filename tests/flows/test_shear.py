@@ -18,7 +18,8 @@ from stability.cli import main
 from stability.errors import NotResolved, NotSmooth, ParameterError
 from stability.flows import stretch
 from stability.modes.solver import Solver
-from stability.studies.neutral import critical, neutral_curve
+from stability.studies.critical import critical
+from stability.studies.neutral import neutral_curve
 
 OPEN = {"bottom": "decay", "top": "decay"}
 BRUTE_FORCE = bool(os.environ.get("STABILITY_BRUTE_FORCE"))

@@ -7,20 +7,28 @@ import numpy as np
 import pytest
 import references
 
-from stability import ModeLost, dispersion, flows
+from stability import ModeLost, dispersion, flows, spectrum
+from stability.modes.accuracy import Accuracy
 from stability.modes.branch import surface_branch, surface_mode
+from stability.modes.memory import forget
 from stability.modes.solver import Solver
-from stability.modes.tracking import Walk, follow
+from stability.modes.tracking import Walk
+
+
+def followed(solver, start, wavenumbers):
+    """The mode `start` at one wavenumber after the other."""
+    walk = Walk(solver, start)
+    return [walk.to(float(k)) for k in wavenumbers]
 
 
 def test_forwards_and_backwards_meet():
     solver = Solver(flows.Dune(shields=3.0))
     k = np.geomspace(1e-3, 8, 40)
-    forwards = follow(solver, surface_mode(solver, k[0]), k)
-    backwards = follow(solver, forwards.modes[-1], k[::-1])
-    there = np.array([mode.sigma for mode in forwards.modes])
-    back = np.array([mode.sigma for mode in backwards.modes])[::-1]
-    bars = np.array([mode.error for mode in forwards.modes])
+    forwards = followed(solver, surface_mode(solver, k[0]), k)
+    backwards = followed(solver, forwards[-1], k[::-1])
+    there = np.array([mode.sigma for mode in forwards])
+    back = np.array([mode.sigma for mode in backwards])[::-1]
+    bars = np.array([mode.error for mode in forwards])
     assert np.all(np.abs(there - back) <= 2 * bars)
 
 
@@ -78,10 +86,10 @@ def test_a_step_onto_another_mode_is_refused():
     """Started on one mode, told to expect another, the walk shortens its steps and stays on the first."""
     solver = Solver(flows.Dune())
     start = solver.solve(1.0, -4.615 + 0.954j)
-    mode = follow(solver, start, [2.0]).modes[0]
+    mode = Walk(solver, start).to(2.0)
     surface = dispersion(flows.Dune(), 2.0).sigma[0]
     assert abs(mode.sigma - surface) > 1
-    back = follow(solver, mode, [1.0]).modes[0]
+    back = Walk(solver, mode).to(1.0)
     assert abs(back.sigma - start.sigma) <= back.error + start.error
 
 
@@ -142,7 +150,7 @@ def test_a_walk_ends_where_the_largest_degree_does_not_suffice():
     with pytest.raises(ModeLost, match="degree 512 does not resolve it any more"):
         walk.to(1e3)
     assert walk.attempts == 100
-    rough = Paced(Solver(flows.Dune(), 1e-5), lambda attempt: 0.05)
+    rough = Paced(Solver(flows.Dune(), Accuracy(1e-5)), lambda attempt: 0.05)
     rough.now.truncation = 1e-6
     assert rough.to(1e3).k == 1e3
 
@@ -240,3 +248,22 @@ def test_the_surface_mode_starts_where_its_law_has_held_for_long():
     ratios = [abs(branch.at([k])[0][k].sigma / flows.Film().long_wave(k) - 1)
               for k in (branch.start.k, branch.start.k / 5)]
     assert ratios[1] < 0.8 * ratios[0] < 0.03
+
+
+def test_what_lands_on_another_mode_is_refined_alone(monkeypatch):
+    """In a batch nothing but the distance from the interpolation tells: here all land on the second mode."""
+    flow, wavenumbers = flows.Film(Re=200.0), np.geomspace(0.98, 1.02, 9)
+    right = dispersion(flow, wavenumbers).sigma
+    others = {k: min(spectrum(flow, k, 3).modes, key=lambda mode: -abs(mode.sigma - one))
+              for k, one in zip(wavenumbers.tolist(), right, strict=True)}
+    forget()
+    taken = []
+
+    def astray(solver, ks, *question):
+        taken.extend(ks)
+        return [others.get(k) for k in ks]
+
+    monkeypatch.setattr(Solver, "solve_many", astray)
+    assert dispersion(flow, wavenumbers).sigma == pytest.approx(right, rel=1e-12)
+    assert set(taken) & set(others)
+    forget()

@@ -15,7 +15,7 @@ from stability import ParameterError, dispersion, flows, load
 from stability.cli import main
 from stability.output.look import Look, parse_size, read_style
 from stability.output.overlay import read_overlay
-from stability.output.panels import scale_of
+from stability.output.panels import scale_found, scale_of
 from stability.output.plots import draw
 from stability.output.style import COLOURS, STYLE
 from stability.output.symbols import assigned, symbol, symbol_of, title_of, value_text
@@ -279,3 +279,9 @@ def test_text_of_an_svg_stays_text(tmp_path, relation):
     content = (tmp_path / "x.svg").read_text()
     assert "<text" in content
     assert "DejaVuSans-" not in content  # outlines of letters are named so
+
+
+def test_values_that_were_found_are_drawn_in_logarithms_where_they_span_decades():
+    """Two neutral curves of a film: of its surface at Re ~ 1, of its shear at Re ~ 10^4."""
+    assert scale_found([1.2, 1.3, 1.5, 9e3, 2e4]) == "log"
+    assert scale_found([1.2, 1.3, 1.5]) == scale_found([-1.0, 100.0]) == scale_found([]) == "linear"

@@ -6,83 +6,27 @@ import subprocess
 import sys
 from copy import deepcopy
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from results import BED, COMMANDS, OTHERS, RECORDS, made
 from scipy.io import netcdf_file
 
 import stability
-from stability import ParameterError, __version__, dispersion, flows, k_max, spectrum
-from stability.bvp.continuation import Continuation
+from stability import ParameterError, __version__, dispersion, flows, k_max
 from stability.cli import main
 from stability.modes.short_waves import well_posedness
+from stability.studies.critical import NeutralPoint, NeutralSweep, critical
 from stability.studies.kmax import Optima, k_max_sweep
 from stability.studies.map import parameter_map
-from stability.studies.neutral import NeutralPoint, NeutralSweep, critical, critical_sweep, neutral_curve
-from stability.studies.sensitivity import sensitivities
-from stability.studies.spectrum import Spectra
 from stability.studies.wellposed import growth_with_degree
-
-BED, FILM = flows.Dune(), flows.Film()
-LOST = {"mode": "most-unstable", "max_degree": 14, "strict": False}
-
-
-def sensitivity():
-    relation = dispersion(BED, 1.0)
-    return replace(sensitivities(relation.modes[0]), settings={"mode": relation.mode, **relation.settings})
-
-
-def sweep():
-    return Optima(BED, "Re", tuple(k_max_sweep(replace(BED, Re=Re) for Re in (10.0, 1.0))))
-
-
-RECORDS = {
-    "dispersion": lambda: dispersion(BED, [1.0, 0.01, 3.0]),
-    "pair": lambda: dispersion(flows.Vortex(Fr2=5.0), [0.1, 1.0, 10.0]),
-    "unresolved": lambda: dispersion(flows.Dune(shields=3.0), [8.0, 1.0], **LOST),
-    "outgrown": lambda: dispersion(flows.Dune(shields=1.05, mu1=0.7), [3.0, 10.0]),
-    "spectrum": lambda: spectrum(flows.Vortex(), 2.0, 3),
-    "optimum": lambda: k_max(BED),
-    "none": lambda: k_max(flows.Vortex(), strict=False),
-    "sweep": sweep,
-    "neutral": lambda: neutral_curve(flows.Poiseuille(), "Re", [1.0, 1.2]),
-    "critical": lambda: critical(flows.Film(slope_deg=45.0), "Re"),
-    "no critical": lambda: critical(flows.Vortex(), "slope_deg", strict=False),
-    "sensitivity": sensitivity,
-    "neutral sweep": lambda: NeutralSweep(FILM, "Re", "We", tuple(critical_sweep([FILM, replace(FILM, We=1)], "Re"))),
-    "spectra": lambda: Spectra(flows.Vortex(), tuple(spectrum(flows.Vortex(), k, 2) for k in (1.0, 2.0))),
-}
-COMMANDS = {
-    "dispersion": "dispersion dune --k 1,0.01,3",
-    "pair": "dispersion vortex --Fr2 5 --k 0.1,1,10",
-    "unresolved": "dispersion dune --shields 3 --k 8,1 --mode most-unstable --max-degree 14",
-    "outgrown": "dispersion dune --shields 1.05 --mu1 0.7 --k 3,10",
-    "spectrum": "spectrum vortex --k 2 --modes 3",
-    "optimum": "kmax dune",
-    "none": "kmax vortex",
-    "sweep": "kmax dune --over Re=10,1",
-    "neutral": "neutral poiseuille --vary Re --k 1,1.2",
-    "sensitivity": "sensitivity dune --k 1",
-    "critical": "critical film --slope-deg 45 --vary Re",
-    "no critical": "critical vortex --vary slope_deg",
-    "neutral sweep": "neutral film --vary Re --over We=0,1",
-    "spectra": "spectrum vortex --k 1,2 --modes 2",
-}
-
-
-OTHERS = {
-    "mode": lambda: dispersion(BED, 1.0).modes[0],
-    "map": lambda: parameter_map(BED, {"Re": [1.0, 10.0]}),
-    "continuation": lambda: Continuation((), {1.0: "why"}),
-}
 
 
 @pytest.fixture(scope="module")
 def record():
     """The records by name, each made once."""
-    return cache(lambda name: {**RECORDS, **OTHERS}[name]())
+    return made
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -195,7 +139,8 @@ def test_what_cannot_be_written_says_so_and_leaves_nothing(tmp_path, record, for
 def test_repr_is_a_short_table():
     lines = repr(dispersion(BED, np.geomspace(0.01, 10, 200))).splitlines()
     assert lines[0] == f"DispersionRelation of {BED}, mode surface: 200 of 200 resolved"
-    assert lines[1].split() == ["k", "growth_rate", "phase_speed", "error", "degree", "status"]
+    assert lines[1].split() == ["k", "growth_rate", "phase_speed", "error", "group_speed", "group_error", "degree",
+                                             "status"]
     assert [line.split()[0] for line in lines[2:]] == ["0.01", "0.01035321843", "0.01071891319", "0.01109752496", "...",
                                                        "9.658832241", "10"]
 
@@ -325,7 +270,7 @@ def test_columns_of_the_table_are_attributes(record, name):
 
 def test_the_package_offers_what_it_lists():
     """Some of it is imported only when asked for, so that the rest starts sooner."""
-    late = ["stability.studies.map", "stability.studies.neutral", "stability.studies.sensitivity", "multiprocessing"]
+    late = ["stability.studies.map", "stability.studies.critical", "stability.studies.sensitivity", "multiprocessing"]
     code = (f"import sys, stability; print([name for name in {late} if name in sys.modules]); "
             "print(all(callable(getattr(stability, name)) for name in stability.__all__ if name != 'flows'))")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -19,9 +19,11 @@ from twins import table
 from stability import NotResolved, dispersion, flows, k_max, spectrum
 from stability.flows import FLOWS
 from stability.modes import dense, listing
+from stability.modes.accuracy import Accuracy
 from stability.modes.branch import surface_branch
 from stability.modes.solver import Solver
-from stability.studies.neutral import critical, neutral_curve
+from stability.studies.critical import critical
+from stability.studies.neutral import neutral_curve
 from stability.studies.plane import Plane
 
 FILM, TWO = flows.Film, flows.TwoLayerCouette
@@ -310,7 +312,7 @@ def test_without_the_overlap_a_walk_would_jump(monkeypatch):
 
 def test_without_the_overlap_a_move_in_a_parameter_would_jump(monkeypatch):
     """Two modes of plane Poiseuille flow, from Re 1e4 to 20 at once, arrive as one unless each keeps to itself."""
-    plane = Plane(flows.Poiseuille(), "Re", 1e-10, 512)
+    plane = Plane(flows.Poiseuille(), "Re", Accuracy())
     first, second = (plane.point(1.0, 1e4, plane.solver(1e4).solve(1.0, rate))
                      for rate in (-0.03518658 - 0.96464251j, -0.06325157 - 0.93635178j))
     assert abs(plane.move(first, 1.0, 20.0).mode.sigma - plane.move(second, 1.0, 20.0).mode.sigma) > 1

@@ -22,9 +22,12 @@ from stability.cli import main
 from stability.errors import WorkersLost
 from stability.output.mapplots import branch_changes
 from stability.studies import map as maps
+from stability.studies import rounds
+from stability.studies.critical import critical
 from stability.studies.journal import Journal, _line
-from stability.studies.map import Request, compute, parameter_map
-from stability.studies.neutral import critical
+from stability.studies.map import parameter_map
+from stability.studies.pieces import compute
+from stability.studies.request import Request
 
 SMALL = {"shields": [1.5, 3.0], "Re": [0.1, 10.0, 1e3]}
 WIDE = {**SMALL, "Re": [0.1, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1e3]}
@@ -165,9 +168,9 @@ def _always_failing(piece, attempt):
 
 def test_pieces_that_fail_are_submitted_again_a_few_times(small, monkeypatch):
     with ThreadPoolExecutor(2) as executor:
-        monkeypatch.setattr(maps, "compute", _failing)
+        monkeypatch.setattr(rounds, "compute", _failing)
         assert parameter_map(flows.Dune(), SMALL, executor=executor).table == small.table
-        monkeypatch.setattr(maps, "compute", _always_failing)
+        monkeypatch.setattr(rounds, "compute", _always_failing)
         with pytest.raises(RuntimeError, match="worker lost 2"):
             parameter_map(flows.Dune(), SMALL, executor=executor)
 
@@ -189,7 +192,7 @@ def _dying_pool():
 
 
 def test_workers_that_keep_dying_are_given_up(monkeypatch):
-    monkeypatch.setattr(maps, "processes", lambda workers: _dying_pool())
+    monkeypatch.setattr(rounds, "processes", lambda workers: _dying_pool())
     with pytest.raises(WorkersLost, match="ended 3 times before they finished anything: a script needs"):
         parameter_map(flows.Dune(), SMALL, workers=2)
 
@@ -296,7 +299,7 @@ def _running(group):
 def test_a_resumed_map_computes_only_what_is_missing(tmp_path, small, monkeypatch):
     partial = tmp_path / "map.partial"
     parameter_map(flows.Dune(), SMALL, journal=partial)
-    monkeypatch.setattr(maps, "compute", None)
+    monkeypatch.setattr(rounds, "compute", None)
     assert parameter_map(flows.Dune(), SMALL, journal=partial).table == small.table
 
 
@@ -401,7 +404,7 @@ def test_a_damaged_first_line_is_named_before_any_work(tmp_path, capsys, monkeyp
     target, partial = tmp_path / "x.csv", tmp_path / "x.csv.partial"
     damaged = b"".join([DAMAGE[kind](header, np.random.default_rng(1), other), *lines])
     partial.write_bytes(damaged)
-    monkeypatch.setattr(maps, "compute", None)
+    monkeypatch.setattr(rounds, "compute", None)
     status, out, err = run(capsys, *FILM_COMMAND, str(target))
     assert (status, out) == (2, "")
     assert err == (f"stability: {str(partial)!r} is not the journal of a map, or its first line is damaged: give "

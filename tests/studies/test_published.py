@@ -6,7 +6,7 @@ from twins import table, wrong_coefficient
 
 from stability import flows, spectrum
 from stability.modes.solver import Solver
-from stability.studies.neutral import critical
+from stability.studies.critical import critical
 
 MISPRINTED = {12, 25, 27, 32}  # modes of Orszag's Table 5 with an error of up to a unit in the last digit
 

@@ -15,7 +15,7 @@ import stability
 from stability import flows
 from stability.modes import energy, short_waves
 from stability.output import columns, record, stored
-from stability.studies import base, compare, explore, neutral, sensitivity
+from stability.studies import base, compare, critical, explore, neutral, sensitivity
 from stability.studies import kmax as optimum
 from stability.studies import map as maps
 
@@ -25,8 +25,8 @@ SHAPES = re.compile(r"\((points|modes|heights|flows|size|values|parameters|count
 ARRAYS = {"DispersionRelation", "Spectrum", "BaseFlow", "WellPosedness", "Map", "NeutralCurve", "Mode",
           "base_flow", "neutral_curve", "explore", "Optima", "Sensitivities"}  # what takes or holds arrays
 RECORDS = {"DispersionRelation": stability.DispersionRelation, "Mode": stability.Mode, "Optimum": optimum.Optimum,
-           "Optima": optimum.Optima, "Spectrum": stability.Spectrum, "NeutralPoint": neutral.NeutralPoint,
-           "NeutralCurve": neutral.NeutralCurve, "NeutralSweep": neutral.NeutralSweep,
+           "Optima": optimum.Optima, "Spectrum": stability.Spectrum, "NeutralPoint": critical.NeutralPoint,
+           "NeutralCurve": neutral.NeutralCurve, "NeutralSweep": critical.NeutralSweep,
            "Sensitivities": sensitivity.Sensitivities, "Map": maps.Map, "BaseFlow": base.BaseFlow,
            "Stored": stored.Stored, "Record": record.Record, "Comparison": compare.Comparison,
            "WellPosedness": short_waves.WellPosedness, "Expansion": asymptotics.Expansion}

@@ -9,7 +9,9 @@ import pytest
 
 from stability import dispersion, flows, spectrum
 from stability.cli import main
-from stability.studies.sensitivity import sensitivities
+from stability.modes.eigenfunction import sharpened
+from stability.modes.solver import Solver
+from stability.studies.sensitivity import parameter_slope, sensitivities
 
 FLOWS = [flows.Vortex(), flows.Dune(depth=3.0), flows.Dune(depth=3.0, fluid="layer"), flows.RollWave(),
          flows.Film(We=0.1), flows.TwoLayerCouette(density_ratio=1.3, gravity=0.2, tension=0.1),
@@ -102,3 +104,23 @@ def test_bad_input(capsys, arguments, line):
     assert captured.out == ""
     assert captured.err.count("\n") == 1
     assert line in captured.err
+
+
+def test_the_bar_covers_the_rounding_of_differenced_coefficients(monkeypatch):
+    """Slopes from steps so large that rounding does not count, their own error extrapolated away."""
+    off, bars = [], []
+    for ratio in 0.15, 0.4, 1.5, 3.2, 6.0:
+        flow = flows.TwoLayerCouette(viscosity_ratio=ratio, density_ratio=1.3, gravity=0.2, tension=0.1)
+        mode, solver = dispersion(flow, K).modes[0], Solver(flow)
+        refined = sharpened(solver, mode)
+        for name in "density_ratio", "gravity", "tension":
+            a, b, c = (parameter_slope(solver, refined, name, step) for step in (5e-4, 1e-3, 2e-3))
+            best = (16 * (4 * a - b) - (4 * b - c)) / 45
+            for term in 1.0, 0.0:
+                monkeypatch.setattr("stability.studies.sensitivity._ROUNDING", term)
+                found = next(one for one in sensitivities(mode).slopes if one.parameter == name)
+                off.append(abs(found.slope - best))
+                bars.append(found.error)
+    wrong = (np.array(off) > np.array(bars)).reshape(-1, 2).sum(axis=0)
+    assert wrong[0] == 0
+    assert wrong[1] > 2

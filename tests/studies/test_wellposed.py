@@ -101,7 +101,7 @@ def test_other_modes_of_an_ill_posed_flow_carry_a_note(mode):
     assert relation.status[0].startswith("resolved" if mode == "leading" else "others may be missing")
     assert relation.notes() == [f"{flow}: grains is ill posed between heights 0 and 1 above its lower edge"]
     assert dispersion(flows.RollWave(slope_deg=28.0), 10.0, mode, strict=False).notes() == []
-    surface = dispersion(flow, 10.0, strict=False)
+    surface = dispersion(flow, 10.0, strict=False, rivals=True)
     assert "that degrees 96 and 160 do not resolve outgrows" in surface.notes()[0]
 
 

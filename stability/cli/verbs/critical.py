@@ -38,7 +38,8 @@ def long_wave_option(verb):
 
 
 def _run(arguments):
-    from ...studies.neutral import check_parameter_name, critical
+    from ...flows.base import check_parameter_name
+    from ...studies.critical import critical
 
     flow, options = flow_of(arguments), options_of(arguments)
     vary = check_parameter_name(flow, arguments.vary.replace("-", "_"))

@@ -1,12 +1,9 @@
 """stability flows: what can be computed, with parameters, defaults, ranges and scales."""
 
-from dataclasses import fields
-from textwrap import wrap
-
-from ...flows import FLOWS, find
-from ...flows.base import allowed, numeric, span_of
-from ...output.text import terminal_width, write
-from ..common import FLOW, flag
+from ...flows import FLOWS
+from ...flows.declaration import Declaration, declared
+from ..names import FLOW, flag_of
+from ..streams import put, terminal_width
 
 
 def add(verbs):
@@ -19,27 +16,24 @@ def add(verbs):
 def _run(arguments):
     from ...flows.catalogue import offers
 
-    chosen = [find(name) for name in ([arguments.flow] if arguments.flow else [*FLOWS, *offers()])]
-    write("\n".join(_describe(flow, terminal_width()) for flow in chosen), None)
+    chosen = [arguments.flow] if arguments.flow else [*FLOWS, *offers()]
+    width = terminal_width()
+    put("\n".join(_describe(declared(name), width) for name in chosen))
     return 0
 
 
-def _describe(flow, width):
-    rows = [(flag(item), str(item.default), allowed(item.metadata), _meaning(flow, item)) for item in fields(flow)]
+def _describe(flow: Declaration, width: int | None) -> str:
+    rows = [(flag_of(item.name), *item[1:]) for item in flow.parameters]
     widths = [max(len(row[i]) for row in rows) for i in range(3)]
     lines = ["  " + "  ".join((*(cell.ljust(w) for cell, w in zip(row, widths, strict=False)), row[3])) for row in rows]
     if width and max(map(len, lines)) > width:
-        lines = [line for name, default, range_, meaning in rows
-                 for line in (f"  {name} {default}, {range_}", *wrap(meaning, width - 4, initial_indent="    ",
-                                                                     subsequent_indent="    "))]
+        lines = _wrapped(rows, width)
     return "\n".join([f"{flow.name}: {flow.title}", *(f"  {part}" for part in flow.scales.split("; ")), *lines, ""])
 
 
+def _wrapped(rows, width):
+    from textwrap import wrap
 
-
-def _meaning(flow, item):
-    """What a parameter means, and where neutral values of it are looked for."""
-    if not numeric(item):
-        return item.metadata["meaning"]
-    low, high = span_of(flow, item.name)
-    return f"{item.metadata['meaning']}; searched from {low:g} to {high:g}"
+    return [line for name, default, range_, meaning in rows
+            for line in (f"  {name} {default}, {range_}", *wrap(meaning, width - 4, initial_indent="    ",
+                                                                 subsequent_indent="    "))]

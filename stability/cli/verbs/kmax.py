@@ -1,7 +1,7 @@
 """stability kmax: the fastest growing wavenumber, over a parameter."""
 
 from ...errors import ParameterError, StabilityError
-from ...status import INTERRUPTED
+from ...status import INTERRUPTED, unresolved
 from ...studies.kmax import MODES, Optima, Optimum, k_max_sweep
 from ..common import SPEC, accuracy_options, add_verb, collect, options_of, sweep_of
 from ..families import answer, each_option
@@ -58,5 +58,5 @@ def _bounded(flow, bvp):
     try:
         found = bounded_maximum(flow, **bvp)
     except StabilityError as reason:
-        return Optimum(flow, (), str(reason), settings)
+        return Optimum(flow, (), unresolved(reason), settings)
     return Optimum(flow, (found,), found.mode.status, settings)

@@ -8,12 +8,12 @@ from ..common import (
     FORMS,
     INTERRUPTED_STATUS,
     SPEC,
+    accuracy_of,
     accuracy_options,
     add_verb,
     check_files,
     flow_of,
     form_of,
-    options_of,
     report,
     swept_values,
 )
@@ -69,9 +69,9 @@ def _run(arguments):
 
 
 def _request(arguments):
-    from ...studies.map import Request, usual_quantity
+    from ...studies.request import Request, usual_quantity
 
-    flow, options = flow_of(arguments), options_of(arguments)
+    flow, accuracy = flow_of(arguments), accuracy_of(arguments)
     if not arguments.over:
         raise ParameterError("--over: give at least one parameter to sweep, NAME=SPEC")
     over = {}
@@ -82,7 +82,7 @@ def _request(arguments):
         over[name] = values
     k = None if arguments.k is None else parse_spec(arguments.k, "--k")
     vary = arguments.vary and arguments.vary.replace("-", "_")
-    return Request(flow, over, arguments.quantity or usual_quantity(k, vary), k, vary, **options)
+    return Request(flow, over, arguments.quantity or usual_quantity(k, vary), k, vary, accuracy)
 
 
 def _check_output(arguments, request):

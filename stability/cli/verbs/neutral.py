@@ -30,7 +30,7 @@ def _run(arguments):
 
 
 def _over(arguments, flow, options):
-    from ...studies.neutral import NeutralPoint, NeutralSweep, critical_sweep
+    from ...studies.critical import NeutralPoint, NeutralSweep, critical_sweep
 
     vary = _vary(arguments, flow)
     name, sweep = sweep_of(arguments, flow)
@@ -50,7 +50,8 @@ def _over(arguments, flow, options):
 def _curve(arguments, flow, options):
     import numpy as np
 
-    from ...studies.neutral import NeutralCurve, NeutralPoint, joined, neutral_parts
+    from ...studies.critical import NeutralPoint
+    from ...studies.neutral import NeutralCurve, joined, neutral_parts
 
     vary, wavenumbers = _vary(arguments, flow), parse_spec(arguments.k, "--k")
 
@@ -67,6 +68,6 @@ def _curve(arguments, flow, options):
 
 
 def _vary(arguments, flow):
-    from ...studies.neutral import check_parameter_name
+    from ...flows.base import check_parameter_name
 
     return check_parameter_name(flow, arguments.vary.replace("-", "_"))

@@ -1,8 +1,10 @@
 """stability spectrum: the least stable modes at one wavenumber."""
 
+from dataclasses import replace
+
 from ...checks import check_integer
-from ...studies.spectrum import MOST, Spectra, spectrum
-from ..common import accuracy_options, add_verb, collect, flow_of, k_option, options_of, report
+from ...studies.spectrum import MOST, Spectra, ill_posed_remarks, spectra
+from ..common import accuracy_of, accuracy_options, add_verb, collect, flow_of, k_option, report
 from ..specs import parse_spec
 
 
@@ -17,14 +19,16 @@ def _modes_option(verb):
 
 
 def _run(arguments):
-    flow, options = flow_of(arguments), options_of(arguments)
+    flow, accuracy = flow_of(arguments), accuracy_of(arguments)
     count = check_integer(arguments.modes, "--modes", 1, MOST)
     wavenumbers = parse_spec(arguments.k, "--k")
 
     def compute():
-        spectra = (spectrum(flow, k, count, strict=False, **options) for k in wavenumbers.tolist())
-        found = collect(arguments, spectra, len(wavenumbers), lambda done: [])
-        missing = wavenumbers.tolist()[len(found):]
-        return Spectra(flow, tuple(found), tuple(missing)) if len(wavenumbers) > 1 else found[0]
+        parts = spectra(flow, wavenumbers.tolist(), count, accuracy)
+        found = collect(arguments, parts, len(wavenumbers), lambda done: [])
+        missing, remarks = wavenumbers.tolist()[len(found):], ill_posed_remarks(found)
+        if len(wavenumbers) == 1:
+            return replace(found[0], remarks=remarks)
+        return Spectra(flow, tuple(found), tuple(missing), remarks)
 
     return report(arguments, compute)

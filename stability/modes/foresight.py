@@ -1,0 +1,48 @@
+"""Modes that a walk is likely to meet, from those that it met in a flow that is nearly the same.
+
+Walks of such flows take the same steps for the most part. So the modes at the wavenumbers of one are refined for the
+other all at once, which costs a third of solving for each in turn; its walk then takes them where it comes to them,
+judged as if it had found them itself: what is foreseen saves work and decides nothing.
+"""
+
+from itertools import pairwise
+
+import numpy as np
+
+from .solver import transfer
+
+_CLOSE = 0.05  # largest relative distance of a rate from the one expected, if the walk knows what to expect
+_SIMILAR = 1.5  # largest ratio of degrees that are made the same
+
+
+class Foresight:
+    """Modes of the flow of a `solver` next to those `known`, {k: mode}, of another flow."""
+
+    def __init__(self, solver, known):
+        solver.prepare(np.array(list(known)))
+        self._likely = {mode.k: mode for mode in _refined(solver, list(known.values()))}
+
+    def at(self, k, rate, part=_CLOSE):
+        """The mode foreseen at k if its rate is this one to a small part of it, or None."""
+        mode = self._likely.get(k)
+        return mode if mode and abs(mode.rate - rate) < part * abs(rate) else None
+
+
+def _refined(solver, known):
+    for degree, group in _groups(known):
+        if group[0].x.shape != (solver.pencil(group[0].degree).size,):
+            return
+        vectors = [np.array(vectors) for vectors in zip(*(
+            transfer(solver, (mode.degree, mode.x, mode.y), degree) for mode in group), strict=True)]
+        modes = solver.solve_many([mode.k for mode in group], None, vectors, degree)
+        yield from (mode for mode in modes if mode)
+
+
+def _groups(modes):
+    """Modes that are refined together, each with the degree: one alone at its degree joins one alone at the next."""
+    groups = {degree: [mode for mode in modes if mode.degree == degree] for degree in {mode.degree for mode in modes}}
+    degrees = sorted(groups)
+    for lower, higher in pairwise(degrees):
+        if len(groups[lower]) == len(groups[higher]) == 1 and higher < _SIMILAR * lower:
+            groups[higher] += groups.pop(lower)
+    return sorted(groups.items())
