@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from ..equations.layer import Layer, Profile
     from .annulus import Annulus
     from .base import Flow, choice, parameter
+    from .chute import Chute
     from .couette import Couette
     from .dune import Dune
     from .film import Film
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from .poiseuille import Poiseuille
     from .rollwave import RollWave
     from .shear import Shear
-    from .steady import Chute, Pile, PlaneShear, Plate
+    from .steady import Pile, PlaneShear, Plate
     from .two_layer_couette import TwoLayerCouette
     from .vortex import Vortex
 
@@ -29,7 +30,7 @@ __all__ = ["FLOWS", "Annulus", "Chute", "Couette", "Dune", "Film", "Flow", "Law"
            "TwoLayerCouette", "Vortex", "choice", "find", "parameter", "register"]
 
 _LATER = {
-    "Annulus": ".annulus", "Chute": ".steady", "Pile": ".steady", "PlaneShear": ".steady", "Plate": ".steady",
+    "Annulus": ".annulus", "Chute": ".chute", "Pile": ".steady", "PlaneShear": ".steady", "Plate": ".steady",
     "Couette": ".couette", "Dune": ".dune", "Film": ".film", "Flow": ".base", "Law": ".law",
     "Layer": "..equations.layer", "Linear": ".laws", "PowerLaw": ".laws", "Regularised": ".laws", "Saturating": ".laws",
     "Poiseuille": ".poiseuille", "Profile": "..equations.layer", "RollWave": ".rollwave", "Shear": ".shear",

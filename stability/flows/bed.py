@@ -193,9 +193,13 @@ def below(edges: Any, count: int, yields: bool) -> tuple:
     """
     parts = [getattr(edges, "bed" if not number else f"bed_{number + 1}") for number in range(count)]
     bottom = parts[-1][0]
-    joints = [getattr(above[0], name) - getattr(below[1], name)
-              for above, below in zip(parts, parts[1:], strict=False) for name in FIELDS]
-    return (*([] if yields else [bottom.v]), bottom.w, *joints)
+    return (*([] if yields else [bottom.v]), bottom.w, *joints(parts[::-1]))
+
+
+def joints(parts: list) -> list:
+    """All fields are continuous from part to part, pairs of edges in the order of s."""
+    return [getattr(before[1], name) - getattr(after[0], name)
+            for before, after in zip(parts, parts[1:], strict=False) for name in FIELDS]
 
 
 def creep_parameter(law: type[Law], floor: str = "floor of the bed", surface: str = "interface") -> dict[str, Any]:
@@ -241,8 +245,20 @@ def check(law: Law, name: str, shields: float) -> None:
     if not low < tau < high:
         raise ParameterError(f"{name}: shields must lie in (1, {high / law.rest:.6g}): friction of law {law.name} "
                              f"cannot exceed {high:g}, no steady flow beyond; give a smaller one (got {shields:g})")
-    if low > 0:
-        slopes = [float(law.slope(one)) for one in (_REST, 2 * _REST)]
-        if not (slopes[0] > 0 and abs(slopes[1] / slopes[0] - 1) < _LINEAR):
-            raise ParameterError(f"{name}: law {law.name}: friction must rise linearly with I from rest, or the shear "
-                                 "rate has no power series at the yield surface; take a law with a slope at I = 0")
+    check_rest(law, name)
+
+
+def check_rest(law: Law, name: str) -> None:
+    """Raise ParameterError where the shear rate has no power series at the yield surface."""
+    if not linear_from_rest(law):
+        raise ParameterError(f"{name}: law {law.name}: friction must rise linearly with I from rest, or the shear rate "
+                             "has no power series at the yield surface; take a law with a slope at I = 0")
+
+
+@lru_cache(maxsize=256)
+def linear_from_rest(law: Law) -> bool:
+    """Whether friction rises linearly with I from rest, if there is a friction at rest."""
+    if not law.yields:
+        return True
+    slopes = [float(law.slope(one)) for one in (_REST, 2 * _REST)]
+    return bool(slopes[0] > 0 and abs(slopes[1] / slopes[0] - 1) < _LINEAR)

@@ -58,7 +58,7 @@ FLOWS = Catalogue({
     "vortex": "vortex:Vortex", "dune": "dune:Dune", "rollwave": "rollwave:RollWave", "film": "film:Film",
     "two_layer_couette": "two_layer_couette:TwoLayerCouette", "poiseuille": "poiseuille:Poiseuille",
     "couette": "couette:Couette", "plane_shear": "steady:PlaneShear", "plate": "steady:Plate",
-    "chute": "steady:Chute", "pile": "steady:Pile", "annulus": "annulus:Annulus",
+    "chute": "chute:Chute", "pile": "steady:Pile", "annulus": "annulus:Annulus",
     "shear": "shear:Shear",
 })
 

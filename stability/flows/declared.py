@@ -96,6 +96,7 @@ DECLARED = {
             ('mu2', '0.6434683848584607', '(0, inf)', 'friction of rapid flow; searched from 0.05 to 2'),
             ('I0', '0.279', '(0, inf)', 'inertial number at which friction is half-way between; searched from 0.01 to 10'),  # noqa: E501
             ('plug', '0.8', '(0, 1)', 'half-width W of the plug over that of the chute: mu1 pressure / (density g L); searched from 0.05 to 0.99'),  # noqa: E501
+            ('grains', '10.0', '(0, inf)', 'L in grain diameters; inertia is its square; searched from 1 to 1000'),
         ),
     ),
     'pile': (

@@ -89,6 +89,13 @@ class Saturated(Granular):
     mu2: float = parameter(tan(radians(32.76)), 0, look=(0.05, 2.0), meaning="friction of rapid flow")
     I0: float = parameter(0.279, 0, look=(0.01, 10.0), meaning="inertial number at which friction is half-way between")
 
+    def _within(self, name, value, low, high, shown):
+        """Refuse a friction coefficient that the law does not reach."""
+        if not low < value < high:
+            raise ParameterError(f"{self.name}: {name} must lie in {shown}: friction of law {self.law.name} lies "
+                                 f"between {low:.6g} and {high:.6g}, no steady flow elsewhere (got "
+                                 f"{getattr(self, name):g})")
+
 
 @dataclass(frozen=True, kw_only=True)
 class Steady(Saturated):
@@ -103,10 +110,3 @@ class Steady(Saturated):
 
     def conditions(self, edges, names):
         raise ParameterError(f"{self.name}: {self.why}: ask for stability base {self.name}")
-
-    def _within(self, name, value, low, high, shown):
-        """Refuse a friction coefficient that the law does not reach."""
-        if not low < value < high:
-            raise ParameterError(f"{self.name}: {name} must lie in {shown}: friction of law {self.law.name} lies "
-                                 f"between {low:.6g} and {high:.6g}, no steady flow elsewhere (got "
-                                 f"{getattr(self, name):g})")

@@ -1,4 +1,4 @@
-"""Steady granular shear flows of the thesis's chapter 2 under any friction law: plates, chute, pile, annulus.
+"""Steady granular shear flows of the thesis's chapter 2 under any friction law: plates and pile.
 
 Stresses in equilibrium fix friction mu = (shear stress)/(pressure), the law the inertial number, and this the shear
 rate U' = I sqrt(p); the velocity follows by quadrature to rounding. beta = p mu' I/U' and alpha = mu - I mu'/2.
@@ -109,82 +109,6 @@ class Plate(Saturated):
 
 
 @dataclass(frozen=True)
-class Chute(Steady):
-    """Grains that fall between rough vertical walls at x = -1 and 1, in the middle as a plug: thesis (2.16).
-
-    The pressure is uniform (Janssen), p = plug / mu1, the shear stress x. z = 1 - |x| is the distance from a wall.
-
-    Scales: see `scales`. A base flow alone: waves raise ParameterError, as do parameters outside their range.
-
-    >>> from stability.studies.base import base_flow
-    >>> float(base_flow(Chute(), 3).shear_stress[0])  # |x| at the wall
-    1.0
-    """
-
-    name: ClassVar[str] = "chute"
-    title: ClassVar[str] = "grains falling between vertical walls, with a plug"
-    scales: ClassVar[str] = ("length: half-width L; velocity: L sqrt(g L) / d, in the thesis I0 times that; "
-                             "stress: density g L")
-    why: ClassVar[str] = "its plug takes part in a wave as a rigid body between two shear zones, which is not derived"
-
-    plug: float = parameter(0.8, 0, 1, look=(0.05, 0.99), meaning="half-width W of the plug over that of the chute: "
-                            "mu1 pressure / (density g L)", reason="at or above 1 nothing flows")
-
-    def __post_init__(self):
-        super().__post_init__()
-        low, high = self.law.range
-        self._within("plug", self.law.rest / self.plug, low, high, f"({self.law.rest / high:.6g}, 1)")
-
-    def layers(self, names):
-        self.base_only(names)
-        law, plug = self.law, self.plug
-        edge = plug if law.yields else 0.0
-        inner = sorted((x for x in (plug * float(law.mu(one)) / law.rest for one in law.breaks) if edge < x < 1),
-                       reverse=True)
-        ends = [1.0, *inner, edge]
-        parts = [(("shear" if not number else f"shear_{number + 1}"), self._part(outer, inside))
-                 for number, (outer, inside) in enumerate(zip(ends, ends[1:], strict=False))]
-        return tuple(sheared_layers(law, parts))
-
-    def _part(self, outer, inside):
-        law, plug = self.law, self.plug
-        pressure = plug / law.rest
-
-        def state(s):
-            x = outer - (outer - inside) * s
-            beyond = (outer - inside) * (1 - s) + (inside - plug) if law.yields else x
-            return Sheared(outer - inside, pressure, x, law.beyond(law.rest * beyond / plug))
-
-        return state
-
-    def state(self, layer, z, base):
-        pressure = self.plug / self.law.rest
-        return {"U": base.U, "dU": base.dU, "shear_stress": 1 - z, "pressure": pressure,
-                "inertial_number": base.dU / np.sqrt(pressure)}
-
-    @property
-    def plug_velocity(self):
-        layers = self.layers(None)
-        return float(layers[-1].profile(np.array([1.0])).U[0])
-
-    @property
-    def flux(self):
-        """Integral of the velocity from wall to wall."""
-        total = 0.0
-        nodes, weights = np.polynomial.legendre.leggauss(128)
-        for layer in self.layers(None):
-            base = layer.profile((1 + nodes) / 2)
-            total += float(weights @ np.broadcast_to(base.U * base.dz, nodes.shape)) / 2
-        return 2 * total + (2 * self.plug * self.plug_velocity if self.law.yields else 0.0)
-
-    def remarks(self):
-        kind = f"plug of half-width {self.plug:.10g}, velocity" if self.law.yields else \
-            "no yield stress: no plug; velocity"
-        return [f"{kind} {self.plug_velocity:.10g}", f"thickness of a shear zone {1 - self.plug:.10g}",
-                f"flux from wall to wall {self.flux:.10g}", "z: distance from a wall"]
-
-
-@dataclass(frozen=True)
 class Pile(Steady):
     """Flow on a deep pile between side walls, averaged across: mu(I) = tan(slope) - mu_wall h, h the depth: (2.28).
 
@@ -201,7 +125,8 @@ class Pile(Steady):
     title: ClassVar[str] = "flow on a deep pile between side walls"
     scales: ClassVar[str] = ("length: width W between the walls; velocity: W sqrt(g cos(slope) W) / d; "
                              "stress: density g cos(slope) W")
-    why: ClassVar[str] = "friction of the side walls changes with the pressure of a wave, which the layers here lack"
+    why: ClassVar[str] = ("friction of the side walls turns with the motion of a wave and rises with its pressure, "
+                          "forces that the layers here lack")
 
     slope_deg: float = parameter(28.0, 0, 90, look=(1.0, 89.0), meaning="inclination of the surface, degrees")
     mu_wall: float = parameter(0.3, 0, look=(0.01, 2.0), meaning="friction coefficient of the side walls")

@@ -136,8 +136,10 @@ class Branch:
         for k, (nodes, index) in zip(wavenumbers, _intervals(self.segments, wavenumbers), strict=True):
             gaps.setdefault((id(nodes[0]), index), (nodes, index, []))[2].append(k)
         found, between = {}, {}
-        for (segment, _), (nodes, index, inside) in gaps.items():
-            chosen = inside if len(inside) <= _FEW else [inside[0], inside[-1]]
+        last = {segment: max(index for other, index in gaps if other == segment) for segment, _ in gaps}
+        for (segment, number), (nodes, index, inside) in gaps.items():
+            ends = [inside[0], inside[-1]] if number == last[segment] else [inside[0]]
+            chosen = inside if len(inside) <= _FEW else ends
             finer, rest = between.setdefault(segment, ([], []))
             for k in chosen:
                 found[k] = self._between(nodes, index, k, finer[-1] if finer else None)

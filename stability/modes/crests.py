@@ -310,7 +310,8 @@ def _moved(solver, near, k, twice=False):
     where that is done `twice`: the difference shows how far rounding scatters slopes where another mode is near.
     """
     try:
-        mode = solver.solve(k, near.rate + (k - near.k) * near.rate_slope, (near.degree, near.x, near.y))
+        mode = solver.solve(k, near.rate + (k - near.k) * near.rate_slope, (near.degree, near.x, near.y),
+                            solver.likely_degree(near))
         if not abs(solver.overlap(near, mode) - 1) < _OVERLAP:
             mode = Walk(solver, near).to(k)
     except ModeLost:

@@ -196,9 +196,8 @@ def _converging(step, vectors, before):
 
 
 def _settled(x_error, y_error, accuracy=VECTOR):
-    """Whether the quotient of two vectors with these errors is right to rounding (or to accuracy^2, where that is
-    more), and its slope nearly so."""
-    return (x_error * y_error < max(0.1 * _EPS, accuracy**2)) & (np.maximum(x_error, y_error) < accuracy)
+    """Whether two vectors with these errors are right to `accuracy`: their quotient then is to its square."""
+    return np.maximum(x_error, y_error) < accuracy
 
 
 def _size(vectors):

@@ -224,12 +224,13 @@ def _collocation(flow, mode, degree, points):
 def _followed(flow, mode, degree, points):
     """The mode at mode.k after a sweep at one degree, all included."""
     solver = Solver(flow, Accuracy(1.0, degree))
-    solver.degrees = (degree,)
+    rough = solver.rough(1.0)
+    solver.degrees = rough.degrees = (degree,)
     sweep = wavenumbers(mode.k, points)
     solver.prepare(sweep)
     first = sweep[0]
-    start = surface_mode(solver, first) if flow.has_surface_mode() else solver.solve(first, _guess(mode, first))
-    found, lost = Branch(solver, start, rough=solver).at(sweep)
+    start = surface_mode(rough, first) if flow.has_surface_mode() else rough.solve(first, _guess(mode, first))
+    found, lost = Branch(solver, start, rough).at(sweep)
     for reason in lost.values():
         raise ModeLost(reason)
     return found[mode.k]

@@ -8,13 +8,14 @@ from dataclasses import replace
 from math import atan, degrees
 
 import bed_references
+import law_series
 import mpmath as mp
 import numpy as np
 import pytest
 import uniform_references
 
 from stability import dispersion, spectrum
-from stability.flows import Dune, Linear, PlaneShear, Plate, PowerLaw, Regularised, RollWave, Saturating
+from stability.flows import Chute, Dune, Linear, PlaneShear, Plate, PowerLaw, Regularised, RollWave, Saturating
 
 COUNT = int(os.environ.get("STABILITY_LAWS", "0"))
 ACCURACY = 1e-11
@@ -52,6 +53,11 @@ def plates(kind, rng):
     return creeping(Plate(shields=shields(law, rng), law=law, grains=10 ** rng.uniform(0, 1.5)))
 
 
+def chutes(kind, rng):
+    law = laws(kind, rng)
+    return creeping(Chute(plug=1 / shields(law, rng), law=law, grains=10 ** rng.uniform(0, 1.5)))
+
+
 def roll_waves(kind, rng):
     law = laws(kind, rng)
     low = 0.8 * law.mu1 if kind is Regularised else law.mu1
@@ -67,12 +73,14 @@ def plane_shears(kind, rng):
 def reference(flow, k, guess, digits):
     """The multi-precision eigenvalue next to a guess."""
     name = type(flow.law).__name__
-    bed = (getattr(bed_references, name, None), *flow.law.values.values())
+    bed = (getattr(law_series, name, None), *flow.law.values.values())
     uniform, creep = (flow.law.name, *bed[1:]), getattr(flow, "creep", None)
     if isinstance(flow, RollWave):
         return uniform_references.rollwave(uniform, flow.slope_deg, flow.Fr2, k, guess, digits)
     if isinstance(flow, PlaneShear):
         return uniform_references.plane_shear(uniform, flow.inertial, flow.inertia, k, guess, digits)
+    if isinstance(flow, Chute):
+        return bed_references.chute(bed, flow.plug, flow.grains**2, k, guess, creep, digits)
     if isinstance(flow, Plate):
         return bed_references.plate(bed, flow.shields, flow.grains**2, k, guess, creep, digits)
     return bed_references.dune(bed, flow.shields, flow.Re, flow.depth, k, guess, creep, digits)
@@ -85,7 +93,7 @@ def mode_of(flow, k):
     return next((mode for mode in spectrum(flow, k, 2, strict=False).modes if mode.status == "resolved"), None)
 
 
-CASES = [(make, kind) for make in (dunes, plates, roll_waves, plane_shears) for kind in LAWS
+CASES = [(make, kind) for make in (dunes, plates, roll_waves, plane_shears, chutes) for kind in LAWS
          if make in (roll_waves, plane_shears) or kind in BEDS]
 
 
@@ -94,7 +102,7 @@ def test_flows_under_laws(make, kind):
     """All within the accuracy, and nearly all within their error bars."""
     rng = np.random.default_rng([5, CASES.index((make, kind))])
     outside, worst, unresolved, done = 0, 0.0, 0, 0
-    few, digits = (1, 20) if make in (dunes, plates) else (2, 30)
+    few, digits = (1, 20) if make in (dunes, plates, chutes) else (2, 30)
     while done < (COUNT or few):
         flow, k = make(kind, rng), 10 ** rng.uniform(-2, 0.8)
         mode = mode_of(flow, k)
@@ -114,7 +122,7 @@ def test_flows_under_laws(make, kind):
 
 def test_a_law_one_percent_off_fails():
     law = Saturating(0.4, 0.6, 0.3)
-    bed = (bed_references.Saturating, *law.values.values())
+    bed = (law_series.Saturating, *law.values.values())
     sigma = dispersion(Dune(shields=1.4, law=replace(law, I0=0.303)), 1.0).modes[0].sigma
     exact = bed_references.dune(bed, 1.4, 10.0, mp.inf, 1.0, sigma, digits=12, radius=0.1)
     assert abs(complex(exact) - sigma) > 1e-4 * abs(sigma)

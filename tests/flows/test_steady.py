@@ -56,8 +56,8 @@ def test_velocities_are_integrals_of_the_shear_rate(law):
     def rate(x):
         return float(law.beyond(max(x / pressure - law.start, 0))) * pressure**0.5
 
-    inner = 0.75 if law.yields else 0.0
-    breaks = sorted([inner, *(float(law.mu(one)) * pressure for one in law.breaks), 1.0])
+    breaks = sorted([chute.core, *(float(law.mu(one)) * pressure for one in law.breaks), 1.0])
+    assert chute.core == 0.75 if law.yields else rate(chute.core) / rate(1.0) == pytest.approx(1e-6, rel=1e-9)
     assert chute.plug_velocity == pytest.approx(float(mp.quad(rate, breaks)), rel=1e-12)
     assert chute.flux == pytest.approx(2 * float(mp.quad(lambda x: x * rate(x), breaks)), rel=1e-12)
     breaks = sorted({0.0, *((pile.mu - float(law.mu(one))) / 0.4 for one in law.breaks), pile.depth})
@@ -133,7 +133,7 @@ def test_waves_under_a_plate_are_resolved_under_every_law():
     (lambda: Pile(slope_deg=33, law=LAW), "slope_deg must lie in"),
     (lambda: Plate(shields=1.7, law=LAW), "shields must lie in"),
     (lambda: Annulus(thickness=0.5, law=LAW), "no steady flow found"),
-    (lambda: spectrum(Chute(), 1.0), "ask for stability base chute"),
+    (lambda: spectrum(Chute(law=PowerLaw(0.4, 1.0, 0.5)), 1.0), "friction must rise linearly with I from rest"),
     (lambda: spectrum(Pile(), 1.0), "ask for stability base pile"),
     (lambda: spectrum(flows.Annulus(), 1.0), "ask for stability base annulus"),
 ])

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 import references
 
-from stability import ModeLost, dispersion, flows
+from stability import ModeLost, dispersion, flows, spectrum
 from stability.modes.accuracy import Accuracy
 from stability.modes.branch import surface_branch, surface_mode
+from stability.modes.memory import forget
 from stability.modes.solver import Solver
 from stability.modes.tracking import Walk
 
@@ -247,3 +248,22 @@ def test_the_surface_mode_starts_where_its_law_has_held_for_long():
     ratios = [abs(branch.at([k])[0][k].sigma / flows.Film().long_wave(k) - 1)
               for k in (branch.start.k, branch.start.k / 5)]
     assert ratios[1] < 0.8 * ratios[0] < 0.03
+
+
+def test_what_lands_on_another_mode_is_refined_alone(monkeypatch):
+    """In a batch nothing but the distance from the interpolation tells: here all land on the second mode."""
+    flow, wavenumbers = flows.Film(Re=200.0), np.geomspace(0.98, 1.02, 9)
+    right = dispersion(flow, wavenumbers).sigma
+    others = {k: min(spectrum(flow, k, 3).modes, key=lambda mode: -abs(mode.sigma - one))
+              for k, one in zip(wavenumbers.tolist(), right, strict=True)}
+    forget()
+    taken = []
+
+    def astray(solver, ks, *question):
+        taken.extend(ks)
+        return [others.get(k) for k in ks]
+
+    monkeypatch.setattr(Solver, "solve_many", astray)
+    assert dispersion(flow, wavenumbers).sigma == pytest.approx(right, rel=1e-12)
+    assert set(taken) & set(others)
+    forget()

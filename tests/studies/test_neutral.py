@@ -2,6 +2,8 @@
 
 import json
 from dataclasses import replace
+from math import exp
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from stability.modes.energy import condition_numbers, energy
 from stability.modes.solver import Solver
 from stability.studies.critical import critical, critical_sweep
 from stability.studies.neutral import neutral_curve
+from stability.studies.ridges import may_turn
 from stability.studies.sensitivity import parameter_slope
 
 FLOWS = [
@@ -198,3 +201,13 @@ def test_bad_usage_is_exit_2(capsys, arguments, message):
     assert out == ""
     assert message in err
     assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize(("growth", "slope", "turns"), [
+    (lambda t: t**2 - 0.01, lambda t: 2 * t, True), (lambda t: 0.01 - t**2, lambda t: -2 * t, True),
+    (lambda t: t**2 + 0.5, lambda t: 2 * t, False), (lambda t: 0.3 + t, lambda t: 1.0, False),
+])
+def test_growth_of_one_sign_at_both_ends_that_may_change_it_in_between(growth, slope, turns):
+    """Parabolas with and without zeros between their ends, and a straight line."""
+    ends = (SimpleNamespace(value=exp(t), growth=growth(t), trend=slope(t)) for t in (-0.2, 0.3))
+    assert bool(may_turn(*ends)) is turns

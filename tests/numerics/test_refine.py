@@ -1,0 +1,45 @@
+"""Inverse iteration: what is told of matrices whose factors lose digits."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from stability import dispersion, flows
+from stability.modes.dense import finite_rates
+from stability.modes.solver import Solver
+from stability.numerics import refine
+
+UNEVEN = flows.Dune(shields=9.14387521184334, mu1=992.7514530779238, b=2.846689817185222, Re=236117451046.43802,
+                    depth=3.5815408193692813e-06, fluid="layer"), 8.714937674024775e-06
+
+
+def test_what_two_ways_of_solving_uneven_matrices_differ_by_joins_the_error(monkeypatch):
+    flow, k = UNEVEN
+    (mode,) = dispersion(flow, k, mode="most-unstable", strict=False).modes
+    solver, corrected = Solver(flow), refine._corrected
+
+    def error(part):
+        monkeypatch.setattr(refine, "_corrected", lambda *question: shifted(corrected(*question), part))
+        return solver.solve(k, mode.rate, (mode.degree, mode.x, mode.y), mode.degree).error
+
+    def shifted(found, part):
+        return replace(found, rate=found.rate * (1 + part))
+
+    assert error(0.0) < 1e-7 * abs(mode.sigma)
+    assert error(1e-5) >= 1e-5 * abs(mode.sigma) * (1 - 1e-3)
+
+
+def test_finite_rates_come_by_decreasing_growth():
+    solver = Solver(flows.Poiseuille())
+    rates = finite_rates(solver, 40, solver.symbols(1.0))
+    assert len(rates) > 10
+    assert np.all(np.diff(rates.real) <= 0)
+
+
+@pytest.mark.parametrize("start", [1.05, 1.0 + 1e-3])
+def test_a_settled_quotient_is_right_to_rounding_wherever_it_starts(start):
+    mode = dispersion(flows.Dune(), 1.0).modes[0]
+    found = Solver(flows.Dune()).solve(1.0, start * mode.rate, None, mode.degree)
+    assert abs(found.sigma - mode.sigma) <= found.error + mode.error
+    assert abs(found.slope - mode.slope) <= 4 * refine.VECTOR * abs(mode.slope)
