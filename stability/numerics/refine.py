@@ -12,7 +12,7 @@ At many wavenumbers each has its own factorisation and all else is done together
 (size, points) then, and plain (size,) at one.
 """
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -29,7 +29,7 @@ VECTOR = 1e-9  # error of a vector, and so of the slope, that is accepted
 _OFFSET = 1e-3  # of a factorisation for corrections from its rate: it must not be singular
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Eigen:
     """Eigenvalues of a pencil at several points, arrays (points,) and vectors (points, size), or at a single one.
 
@@ -52,7 +52,9 @@ class Eigen:
 
     def split(self):
         """Return the eigenvalues of the points, each on its own."""
-        return [Eigen(*values) for values in zip(*(getattr(self, field.name) for field in fields(self)), strict=True)]
+        bars = (getattr(self, name).tolist() for name in ("truncation", "rounding", "spread"))
+        return [Eigen(*values) for values in zip(self.rate, self.slope, *bars, self.x, self.y, self.settled.tolist(),
+                                                 strict=True)]
 
 
 def refine(pencil, weights, rate, x=None, y=None, bars=True, accuracy=VECTOR):
