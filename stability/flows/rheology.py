@@ -22,6 +22,7 @@ from math import inf
 
 import numpy as np
 
+_ROUNDING = 1e-14  # of the terms of C
 _ANGLES = np.linspace(-1, 1, 401)  # s = sin 2a, odd number: includes 0
 
 
@@ -37,10 +38,13 @@ def condition(r, alpha):
 
 
 def ill_posed(r, alpha):
-    """True where short waves of some direction grow without bound: numbers or arrays."""
+    """True where short waves of some direction grow without bound: numbers or arrays.
+
+    What is rounding is not: the regularised law is neutral where its branches meet, C(I1) = 0.
+    """
     excess = condition(r, alpha)
     root = 2 * r / np.maximum(alpha + np.sqrt(np.maximum(excess, 0)), 1e-300)
-    return ((excess > 0) & (root < 1)) | (alpha > 1)
+    return ((excess > _ROUNDING * (np.abs(r) + alpha**2)) & (root < 1)) | (alpha > 1)
 
 
 def law_condition(law, I):  # noqa: E741
