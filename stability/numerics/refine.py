@@ -12,7 +12,7 @@ At many wavenumbers each has its own factorisation and all else is done together
 (size, points) then, and plain (size,) at one.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 
 import numpy as np
@@ -52,9 +52,9 @@ class Eigen:
 
     def split(self):
         """Return the eigenvalues of the points, each on its own."""
-        bars = (getattr(self, name).tolist() for name in ("truncation", "rounding", "spread"))
-        return [Eigen(*values) for values in zip(self.rate, self.slope, *bars, self.x, self.y, self.settled.tolist(),
-                                                 strict=True)]
+        columns = {field.name: getattr(self, field.name) for field in fields(self)}
+        columns |= {name: columns[name].tolist() for name in ("truncation", "rounding", "spread", "settled")}  # cheaper
+        return [Eigen(*values) for values in zip(*columns.values(), strict=True)]
 
 
 def refine(pencil, weights, rate, x=None, y=None, bars=True, accuracy=VECTOR):
