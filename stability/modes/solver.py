@@ -139,8 +139,8 @@ class Solver:
     def weights(self, k):
         """Return the weights of the pencils at one wavenumber, (parts,), or at a list of them, (parts, points)."""
         if isinstance(k, list):
-            each = [self.weights(one) for one in k]
-            return Weights(*(np.array([getattr(one, name) for one in each]).T for name in ("value", "slope", "spread")))
+            known = [self._at(one) for one in k]
+            return Weights(*(np.array([rows[part][index] for _, rows, index, _ in known]).T for part in range(3)))
         known = self._at(k)
         if known[-1] is None:
             _, rows, index, _ = known
