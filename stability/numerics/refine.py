@@ -52,7 +52,7 @@ class Eigen:
 
     def split(self):
         """Return the eigenvalues of the points, each on its own."""
-        bars = (getattr(self, name).tolist() for name in ("truncation", "rounding", "spread"))
+        bars = (getattr(self, name).tolist() for name in ("truncation", "rounding", "spread", "scatter", "left"))
         return [Eigen(*values) for values in zip(self.rate, self.slope, *bars, self.x, self.y, self.settled.tolist(),
                                                  strict=True)]
 
