@@ -3,7 +3,7 @@
 >>> status = unresolved("error 1.0e-02 exceeds tolerance")
 >>> status.kind is Kind.UNRESOLVED, status
 (True, 'error 1.0e-02 exceeds tolerance')
->>> outgrown(RESOLVED), is_resolved(outgrown(RESOLVED)), is_outgrown(read("resolved; outgrown"))
+>>> as_outgrown(RESOLVED), is_resolved(as_outgrown(RESOLVED)), is_outgrown(status_of("resolved; outgrown"))
 ('resolved; outgrown', True, True)
 """
 
@@ -57,7 +57,7 @@ def unresolved(why: object) -> Status:
     return Status(Kind.UNRESOLVED, str(why))
 
 
-def read(text: str) -> Status:
+def status_of(text: str) -> Status:
     """Return the status that a text says, such as one of a file: the only place that looks into it."""
     if isinstance(text, Status):
         return text
@@ -72,37 +72,37 @@ def read(text: str) -> Status:
 
 def is_resolved(status: str) -> bool:
     """Whether the numbers beside this status are a result."""
-    return read(status).kind is Kind.RESOLVED
+    return status_of(status).kind is Kind.RESOLVED
 
 
 def is_stable(status: str) -> bool:
     """Whether there is no number because nothing grows."""
-    return read(status).kind is Kind.STABLE
+    return status_of(status).kind is Kind.STABLE
 
 
 def is_settled(status: str) -> bool:
     """Whether the question is answered, with a number or without."""
-    return read(status).kind in (Kind.RESOLVED, Kind.STABLE, Kind.NO_DERIVATIVE)
+    return status_of(status).kind in (Kind.RESOLVED, Kind.STABLE, Kind.NO_DERIVATIVE)
 
 
 def is_interrupted(status: str) -> bool:
     """Whether the question was not reached."""
-    return read(status).kind is Kind.INTERRUPTED
+    return status_of(status).kind is Kind.INTERRUPTED
 
 
 def is_outgrown(status: str) -> bool:
     """Whether another mode grows faster than the one asked for."""
-    return Aside.OUTGROWN in read(status).asides
+    return Aside.OUTGROWN in status_of(status).asides
 
 
-def outgrown(status: str) -> Status:
+def as_outgrown(status: str) -> Status:
     """Return the status of a mode that another one outgrows."""
-    return read(status).but(Aside.OUTGROWN)
+    return status_of(status).but(Aside.OUTGROWN)
 
 
-def inside(status: str) -> Status:
+def as_inside(status: str) -> Status:
     """Return the status of a neutral value at which other waves grow."""
-    return read(status).but(Aside.INSIDE)
+    return status_of(status).but(Aside.INSIDE)
 
 
 def doubtful(why: str) -> Status:

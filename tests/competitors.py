@@ -4,8 +4,10 @@
     dune(shields, mu1, b, Re, k, n, cut=100)         bed in W and P; fluid cut at z = cut / k, D^4 at 2 n points
     poiseuille(Re, k, n)                             clamped fourth-order collocation
     cut_response(k, Re, height, n)                   wall stress of a fluid cut at a height
+    poiseuille_dmsuite(Re, k, n)                     the same matrices from the package dmsuite, where it is installed
+    EvenGalerkin(n)                                  even modes alone, n Legendre functions, one mode followed
 
-Each returns all finite eigenvalues sigma of exp(i k x + sigma t), or the response. With P and W the
+Each but the last returns all finite eigenvalues sigma of exp(i k x + sigma t), or the response. With P and W the
 perturbations of pressure and vertical velocity, a granular layer obeys (from (4.14), (4.15) and their analogues)
 
     t = beta (i/k) (W'' + k^2 W) + alpha P,     n = -P + 2 eta W',     u = i W'/k,
@@ -15,7 +17,8 @@ perturbations of pressure and vertical velocity, a granular layer obeys (from (4
 from math import radians, tan
 
 import numpy as np
-from scipy.linalg import eig
+from numpy.polynomial import legendre
+from scipy.linalg import eig, lapack
 
 
 def chebyshev(n, low, high):
@@ -135,3 +138,64 @@ def poiseuille(Re, k, n):
     laplace = D2 - k**2 * eye
     A = (D4 - 2 * k**2 * D2 + k**4 * eye) / Re - 2j * k * eye - 1j * k * np.diag(1 - y**2) @ laplace
     return finite(A, laplace)
+
+
+def poiseuille_dmsuite(Re, k, n):
+    """Orr-Sommerfeld at n inner points: Weideman & Reddy (2000), function orrsom of their suite, at any k."""
+    from dmsuite.cheb_bc import cheb4c
+    from dmsuite.poly_diff import Chebyshev
+
+    D2 = Chebyshev(degree=n + 1).at_order(2)[1:-1, 1:-1]
+    y, D4 = cheb4c(n + 1)
+    eye = np.eye(n)
+    laplace = D2 - k**2 * eye
+    A = (D4 - 2 * k**2 * D2 + k**4 * eye) / Re - 2j * k * eye - 1j * k * np.diag(1 - y**2) @ laplace
+    return finite(A, laplace)
+
+
+class EvenGalerkin:
+    """Plane Poiseuille flow by n even clamped combinations of Legendre polynomials (Shen 1994), a mode at a time.
+
+    With phi = sum a_j f_j and tests f_i the Orr-Sommerfeld equation is A a = c B a, B = K + k^2 M and
+    A = K_U + k^2 M_U - 2 M - i/(k Re) (S + 2 k^2 K + k^4 M); M, K, S have the products of f, f', f''.
+    """
+
+    def __init__(self, n=64):
+        even = 2 * np.arange(n)
+        C = np.zeros((2 * n + 3, n))
+        for j, column in zip(even, C.T, strict=True):
+            column[[j, j + 2, j + 4]] = np.array([1, -2 * (2 * j + 5) / (2 * j + 7), (2 * j + 3) / (2 * j + 7)]) / (
+                np.sqrt(2 * (2 * j + 3) ** 2 * (2 * j + 5)))
+        z, weight = legendre.leggauss(2 * n + 6)
+        f, slope, bend = (legendre.legval(z, legendre.legder(C, order) if order else C).T for order in range(3))
+        w, U = weight[:, None], (1 - z**2)[:, None]
+        self.M, self.K, self.S = (g.T @ (w * g) for g in (f, slope, bend))
+        self.MU, self.KU = f.T @ (w * U * f), slope.T @ (w * U * slope) + f.T @ (w * (-2 * z)[:, None] * slope)
+
+    def pair(self, Re, k):
+        viscous = self.S + 2 * k**2 * self.K + k**4 * self.M
+        return self.KU + k**2 * self.MU - 2 * self.M - 1j / (k * Re) * viscous, self.K + k**2 * self.M
+
+    def followed(self, points, tolerance=1e-12):
+        """c of the least stable even mode at the first of the points (Re, k), followed through the others."""
+        values, vectors = eig(*self.pair(*points[0]))
+        c, x, found = values[values.imag.argmax()], vectors[:, values.imag.argmax()], []
+        for point in points:
+            A, B = self.pair(*point)
+            c, before = _ahead(found[-3:]) if found else c, np.inf
+            factors, pivots, _ = lapack.zgetrf(A - c * B)
+            for _ in range(9):
+                z = lapack.zgetrs(factors, pivots, B @ x)[0]
+                largest = np.abs(x).argmax()
+                change, x = x[largest] / z[largest], z / z[largest]
+                if abs(change - before) < tolerance * abs(c):
+                    break
+                before = change
+            found.append(c + change)
+        return np.array(found)
+
+
+def _ahead(values):
+    """The next of evenly spaced values, by a parabola through the last three, a line, or none."""
+    return values[-1] if len(values) < 2 else 2 * values[-1] - values[-2] if len(values) < 3 else (
+        3 * values[2] - 3 * values[1] + values[0])

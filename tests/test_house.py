@@ -179,3 +179,24 @@ def test_no_file_needs_the_private_names_of_another(package):
     ("class A:\n    def __init__(self):\n        self._b = 1\n\n    def f(self, it):\n        return it._b", set())])
 def test_a_private_name_is_seen(source, names):
     assert private(source) == names
+
+
+SAME = {"add", "main", "profile"}  # of every verb, of both programs, the base flow in a module: one thing each
+
+
+def defined(source):
+    """The public names that a module defines."""
+    for node in ast.parse(source).body:
+        if isinstance(node, ast.FunctionDef | ast.ClassDef):
+            yield node.name
+        elif isinstance(node, ast.Assign):
+            yield from (name.id for target in node.targets for name in ast.walk(target) if isinstance(name, ast.Name))
+
+
+def test_a_public_name_means_one_thing():
+    places: dict[str, list[str]] = {}
+    for file in PACKAGE.rglob("*.py"):
+        for name in defined(file.read_text()):
+            if not name.startswith("_") and name not in SAME:
+                places.setdefault(name, []).append(str(file.relative_to(PACKAGE)))
+    assert not {name: found for name, found in places.items() if len(found) > 1}

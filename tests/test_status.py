@@ -15,26 +15,26 @@ from stability.status import (
     Aside,
     Kind,
     Status,
+    as_inside,
+    as_outgrown,
     doubtful,
-    inside,
     is_interrupted,
     is_outgrown,
     is_resolved,
     is_settled,
     is_stable,
-    outgrown,
-    read,
+    status_of,
     unresolved,
 )
 
 TEXTS = {
     "resolved": RESOLVED, "stable": STABLE, "interrupted": INTERRUPTED, "lost": LOST,
-    "resolved; outgrown": outgrown(RESOLVED), "resolved; inside": inside(RESOLVED),
+    "resolved; outgrown": as_outgrown(RESOLVED), "resolved; inside": as_inside(RESOLVED),
     "stable: no waves grow for k up to 100": Status(Kind.STABLE, "no waves grow for k up to 100"),
     "no derivative: depth is infinite": Status(Kind.NO_DERIVATIVE, "depth is infinite"),
     "lost: two modes; collide": Status(Kind.LOST, "two modes; collide"),
-    "error 1.0e-02 exceeds tolerance; outgrown": outgrown(unresolved("error 1.0e-02 exceeds tolerance")),
-    "others may be missing: why; inside": inside(doubtful("why")),
+    "error 1.0e-02 exceeds tolerance; outgrown": as_outgrown(unresolved("error 1.0e-02 exceeds tolerance")),
+    "others may be missing: why; inside": as_inside(doubtful("why")),
     "resolvedly not": unresolved("resolvedly not"), "": unresolved(""),
 }
 
@@ -42,10 +42,10 @@ TEXTS = {
 @pytest.mark.parametrize("text", TEXTS)
 def test_text_and_status_are_one(text):
     status = TEXTS[text]
-    again = read(text)
+    again = status_of(text)
     assert status == again == text
     assert (again.kind, again.message, again.asides) == (status.kind, status.message, status.asides)
-    assert read(status) is status
+    assert status_of(status) is status
 
 
 @pytest.mark.parametrize("status", TEXTS.values(), ids=repr)
@@ -70,8 +70,8 @@ def test_what_follows_from_a_status():
 
 
 def test_asides_add_up():
-    assert read("lost; inside; outgrown").asides == (Aside.INSIDE, Aside.OUTGROWN)
-    assert read("lost; inside; outgrown") == outgrown(inside(LOST))
+    assert status_of("lost; inside; outgrown").asides == (Aside.INSIDE, Aside.OUTGROWN)
+    assert status_of("lost; inside; outgrown") == as_outgrown(as_inside(LOST))
 
 
 def test_a_relation_that_was_not_asked_says_so():

@@ -35,7 +35,7 @@ _K_ACCURACY = 1e-7  # of the bounded minimisation, relative to k
 
 
 @dataclass(frozen=True)
-class Point(Eigenvalue):
+class BoundaryMode(Eigenvalue):
     """An eigenvalue found by solve_bvp.
 
     `error` is the change of sigma when every mesh interval is halved; sigma is that of the finer mesh, in
@@ -84,7 +84,7 @@ def steps_in_k(flow, k, *, tolerance=TOLERANCE, residual=None, guess=None, setti
     wavenumbers = np.unique(check_wavenumbers(k))
     effort = _effort(tolerance, residual)
     try:
-        walk = _Walk(lambda k: (setting(k), k), *_start(setting, wavenumbers[0], guess, effort[1][0]), effort)
+        walk = _ParameterWalk(lambda k: (setting(k), k), *_start(setting, wavenumbers[0], guess, effort[1][0]), effort)
     except ModeLost as reason:
         yield Continuation((), dict.fromkeys(wavenumbers.tolist(), str(reason)))
     else:
@@ -101,7 +101,7 @@ def continue_in(flow, name, values, k, *, tolerance=TOLERANCE, residual=None):
     values = [float(value) for value in values]
     effort = _effort(tolerance, residual)
     first = replace(flow, **{name: values[0]})
-    walk = _Walk(lambda k: (first, k), *_start(lambda k: first, k, None, effort[1][0]), effort)
+    walk = _ParameterWalk(lambda k: (first, k), *_start(lambda k: first, k, None, effort[1][0]), effort)
     try:
         walk.to(k)
     except ModeLost as reason:
@@ -116,7 +116,7 @@ class BoundedMaximum:
 
     k: float
     error: float
-    mode: Point
+    mode: BoundaryMode
 
     @property
     def growth_rate(self):
@@ -134,7 +134,7 @@ def bounded_maximum(flow, search=SEARCH, *, tolerance=TOLERANCE, residual=None, 
 
     setting = setting or (lambda k: flow)
     effort = _effort(tolerance, residual)
-    walk = _Walk(lambda k: (setting(k), k), *_start(setting, search[0], None, effort[1][0]), effort)
+    walk = _ParameterWalk(lambda k: (setting(k), k), *_start(setting, search[0], None, effort[1][0]), effort)
     wavenumbers = np.geomspace(*search, int(log(search[1] / search[0]) / _BRACKET_STEP) + 1)
     growth = []
     for k in wavenumbers:
@@ -199,7 +199,7 @@ def _joined(parts):
                         {value: reason for part in parts for value, reason in part.lost.items()})
 
 
-class _Walk(Walker):
+class _ParameterWalk(Walker):
     """A walk along k or a parameter: `family` maps its value to (flow, k)."""
 
     checks = ("changes_little", "bends_little")
@@ -247,7 +247,7 @@ class _Walk(Walker):
         status = RESOLVED if error <= self.tolerance * abs(fine.rate) else \
             unresolved(f"error {problem.width * error:.1e} exceeds tolerance with {len(fine.mesh)} nodes")
         sigma = problem.width * fine.rate
-        return Point(problem.flow, problem.k, complex(sigma), float(problem.width * error), len(fine.mesh),
+        return BoundaryMode(problem.flow, problem.k, complex(sigma), float(problem.width * error), len(fine.mesh),
                      fine.spline.c.shape[-1] * len(fine.mesh), status)
 
     def foresee(self, to):

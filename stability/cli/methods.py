@@ -16,7 +16,7 @@ def method_options(verb):
                       help="pressure on the free surface of vortex with bvp-thesis, default 0.01")
 
 
-def settings_of(bvp, options=None):
+def bvp_settings(bvp, options=None):
     """What the method of `method_of` is told, for the header of its results; `options` are those of collocation."""
     if bvp is None:
         return options

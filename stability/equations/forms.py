@@ -54,7 +54,7 @@ class Form:
     __rmul__ = __mul__
 
 
-def symbol(name):
+def variable(name):
     """Return the form that is this symbol."""
     return Form({(name,): 1.0})
 

@@ -32,7 +32,7 @@ from numpy.polynomial import chebyshev as C
 
 from ..errors import NotSmooth
 from ..numerics.chebyshev import points
-from ..numerics.smooth import MOST, Fit, Rough, fit
+from ..numerics.smooth import MOST_SAMPLES, Fit, Rough, fit
 from .forms import Form
 
 FIELDS = ("v", "w", "t", "n")
@@ -142,7 +142,7 @@ class Layer:
         Raises NotSmooth where the series does not end.
         """
         series, cut, largest = self._series[name]
-        degrees, sizes = np.array([[MOST], [len(series) - 1]]), np.array([cut, _NOISE * largest])
+        degrees, sizes = np.array([[MOST_SAMPLES], [len(series) - 1]]), np.array([cut, _NOISE * largest])
         steepest = np.minimum(degrees / np.sqrt(np.maximum(s * (1 - s), _EPS)), 2.0 * degrees**2)
         return 2 * C.chebval(2 * s - 1, C.chebder(series)), sizes @ steepest
 

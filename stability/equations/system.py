@@ -12,7 +12,7 @@ import numpy as np
 
 from ..checks import shown
 from ..errors import ConditionCount, ParameterError
-from .forms import Form, symbol
+from .forms import Form, variable
 from .layer import FIELDS, residuals, resolved
 
 _EQUATIONS = ("shear rate", "continuity", "momentum along", "momentum across")
@@ -32,7 +32,7 @@ class Equation:
 
 
 @dataclass(frozen=True)
-class Row:
+class EquationRow:
     """An equation or a condition, whatever its coefficients: terms (unknown, monomial, indices of what is not 0)."""
 
     name: str
@@ -76,8 +76,8 @@ class System:
     """All `equations` and `conditions` of a flow, with the names of its `unknowns` and `surfaces`."""
 
     def __init__(self, flow):
-        names = SimpleNamespace(k=symbol("k"), rate=symbol("rate"),
-                                **{name: symbol(name) for name in (*flow.functions, *flow.surfaces)})
+        names = SimpleNamespace(k=variable("k"), rate=variable("rate"),
+                                **{name: variable(name) for name in (*flow.functions, *flow.surfaces)})
         layers = flow.layers(names)
         self.fields = tuple(f"{layer.name}.{field}" for layer in layers for field in FIELDS)
         self.surfaces = tuple(flow.surfaces)
@@ -100,7 +100,8 @@ class System:
         """The `Structure` of the equations."""
         rows = *((one.name, one.extra, one.terms) for one in self.equations), *(("", 0, one) for one in self.conditions)
         return Structure((*self.fields, *self.surfaces), len(self.fields), len(self.equations), self.longest, tuple(
-            Row(name, extra, tuple((unknown, monomial, _support(series)) for unknown, monomial, series in terms))
+            EquationRow(name, extra, tuple((unknown, monomial, _support(series))
+                                           for unknown, monomial, series in terms))
             for name, extra, terms in rows))
 
     @property
@@ -121,8 +122,8 @@ class System:
 
     def _equations(self, flow, layers, index, names):
         layer = layers[index]
-        fields = [symbol(f"{layer.name}.{field}") for field in FIELDS]
-        slopes = [symbol(f"{layer.name}.{field}'") for field in FIELDS]
+        fields = [variable(f"{layer.name}.{field}") for field in FIELDS]
+        slopes = [variable(f"{layer.name}.{field}'") for field in FIELDS]
         rate = 0.0 if layer.steady else names.rate
         keys = []
 
@@ -168,7 +169,7 @@ def _same(one, other):
 
 
 def _edge(layer, end):
-    return SimpleNamespace(**{field: symbol(f"{layer.name}.{field}@{end}") for field in FIELDS})
+    return SimpleNamespace(**{field: variable(f"{layer.name}.{field}@{end}") for field in FIELDS})
 
 
 def _support(series):

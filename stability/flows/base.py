@@ -53,7 +53,7 @@ def choice(*options: str, meaning: str) -> Any:
     return field(default=options[0], metadata={"options": options, "meaning": meaning})
 
 
-def table(default: str, read: Callable[[str, Any], Any], *, kinds: str, meaning: str) -> Any:
+def table_parameter(default: str, read: Callable[[str, Any], Any], *, kinds: str, meaning: str) -> Any:
     """Declare a parameter that is a value of its own, such as a file of data: `read(name, value)` makes it from what is
     given, or raises a ParameterError; `kinds` says what that may be."""
     return field(default=default, metadata={"table": True, "read": read, "kinds": kinds, "meaning": meaning})

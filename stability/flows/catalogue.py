@@ -97,7 +97,7 @@ def find(name: str) -> "type[Flow]":
     if name in FLOWS:
         return FLOWS[name]
     if ":" in name or name.endswith(".py"):
-        found = sources.load(name)
+        found = sources.load_class(name)
     else:
         offered = offers()
         if name not in offered:

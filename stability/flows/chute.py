@@ -22,7 +22,7 @@ from ..equations.forms import Form
 from ..equations.layer import Layer, Profile
 from . import bed as beds
 from .base import parameter
-from .equilibrium import Saturated, Sheared, sheared_layers
+from .equilibrium import Equilibrium, Saturated, sheared_layers
 from .law import Law
 
 
@@ -43,7 +43,7 @@ class Zone:
 
 
 @dataclass(frozen=True)
-class Creeping:
+class CreepingLayer:
     """The same where the grains creep, by ln I, which falls evenly from `fast` to `slow`."""
 
     fast: float
@@ -110,17 +110,17 @@ class Chute(Saturated):
         if not law.yields:
             core = self.creep * wall  # type: ignore[attr-defined]
             ends = [wall, *sorted((one for one in law.breaks if core < one < wall), reverse=True), core]
-            return [Creeping(fast, slow, unit) for fast, slow in zip(ends, ends[1:], strict=False)]
+            return [CreepingLayer(fast, slow, unit) for fast, slow in zip(ends, ends[1:], strict=False)]
         inner = (unit * float(law.mu(one)) for one in law.breaks)
         ends = [1.0, *sorted((x for x in inner if self.plug < x < 1), reverse=True), self.plug]
         return [Zone(outer, inside, unit, self.plug) for outer, inside in zip(ends, ends[1:], strict=False)]
 
-    def _state(self, zone) -> Callable[[Any], Sheared]:
+    def _state(self, zone) -> Callable[[Any], Equilibrium]:
         law = self.law
 
         def state(s):
             x, inertial, stretch = zone.at(law, s)
-            return Sheared(stretch, zone.unit, x, inertial)
+            return Equilibrium(stretch, zone.unit, x, inertial)
 
         return state
 

@@ -22,7 +22,7 @@ _CROWD = 8  # distance from the end at which heights crowd: this power of s
 
 
 @dataclass(frozen=True)
-class Sheared:
+class Equilibrium:
     """What equilibrium says at the points s of a layer: arrays (points,)."""
 
     dz: Any
@@ -36,7 +36,8 @@ class Sheared:
         return self.scale * self.inertial * np.sqrt(self.pressure)
 
 
-def sheared_layers(law: Law, parts: list[tuple[str, Callable[[Any], Sheared]]], inertia: float = 1.0) -> list[Layer]:
+def sheared_layers(law: Law, parts: list[tuple[str, Callable[[Any], Equilibrium]]],
+                   inertia: float = 1.0) -> list[Layer]:
     """The layers of a steady flow, from that at rest at its lower edge upwards.
 
     Where friction rises as another power of I than the first, the shear rate is a power of the distance from the yield

@@ -270,4 +270,4 @@ def find_law(name: str) -> type[Law]:
 
         raise ParameterError(f"--law: unknown law {name!r}{nearest(name, LAWS)}; laws: {', '.join(LAWS)}; a law of "
                              "your own is named path/to/file.py:Class or package.module:Class")
-    return check_law(sources.load(name), name)
+    return check_law(sources.load_class(name), name)

@@ -14,14 +14,14 @@ from ..errors import ParameterError
 
 DIGEST = 12  # hexadecimal digits of a digest that are shown
 
-LEAST = 8  # points of a table
+LEAST_ROWS = 8  # points of a table
 _MOST = 100_000
 _LARGEST = 50_000_000  # bytes of a file
 _COLUMNS = ("z", "U", "U_error")
 
 
 @dataclass(frozen=True)
-class Table:
+class DataTable:
     """Values U at heights z, both tuples (points,) by rising z, and their standard errors U_error, or None.
 
     `name` is the path of the file they were read from, `digest` the beginning of the sha256 of what was read.
@@ -50,7 +50,7 @@ class Table:
         return f"{self.name} (sha256 {self.digest})"
 
 
-def from_arrays(name: str, z: Any, U: Any, U_error: Any = None) -> Table:
+def from_arrays(name: str, z: Any, U: Any, U_error: Any = None) -> DataTable:
     """Return the table of arrays of equal length; raises ParameterError that begins with `name`."""
     columns = [_numbers(f"{name}: {key}", values) for key, values in zip(_COLUMNS, (z, U, U_error), strict=True)
                if values is not None]
@@ -61,7 +61,7 @@ def from_arrays(name: str, z: Any, U: Any, U_error: Any = None) -> Table:
     return _table(name, f"table of {len(columns[0])} points", columns, digest, [""] * len(columns[0]))
 
 
-def from_file(name: str, path: Any, names: list[str]) -> Table:
+def from_file(name: str, path: Any, names: list[str]) -> DataTable:
     """Return the table of a CSV file with a header row, columns z, U and perhaps U_error, comments after #.
 
     Raises ParameterError that begins with `name`; `names` are what else might have been meant.
@@ -123,8 +123,8 @@ def _numbers(name, values):
 def _table(where, name, columns, digest, places):
     """The table of checked columns, by rising z."""
     z, U, *errors = columns
-    if not LEAST <= len(z) <= _MOST:
-        raise ParameterError(f"{where}: a table needs {LEAST} to {_MOST} points (got {len(z)})")
+    if not LEAST_ROWS <= len(z) <= _MOST:
+        raise ParameterError(f"{where}: a table needs {LEAST_ROWS} to {_MOST} points (got {len(z)})")
     for key, column in zip(_COLUMNS, columns, strict=False):
         wrong = np.flatnonzero(~np.isfinite(column) | (np.abs(column) > 1e20))
         if len(wrong):
@@ -150,4 +150,4 @@ def _table(where, name, columns, digest, places):
         raise ParameterError(f"{where}: U is {U[0]:g} at every z: there is no shear")
     order = slice(None, None, 1 if steps[0] > 0 else -1)
     z, U, *errors = (tuple(column[order].tolist()) for column in (z, U, *errors))
-    return Table(name, z, U, errors[0] if errors else None, digest)
+    return DataTable(name, z, U, errors[0] if errors else None, digest)

@@ -10,8 +10,8 @@ import numpy as np
 from ..equations.layer import Layer, Profile
 from ..errors import NotSmooth, ParameterError
 from ..numerics.smooth import Rough, fit
-from .base import Flow, choice, parameter, table
-from .measured import Table
+from .base import Flow, choice, parameter, table_parameter
+from .measured import DataTable
 from .stretch import Stretch, limit, sheared, stretched
 from .velocity import NAMES, Function, read
 from .velocity_fit import smoothed
@@ -48,7 +48,7 @@ class Shear(Flow):
     scales: ClassVar[str] = ("length and velocity: those in which U(z) is given; "
                              "Re: length * velocity / kinematic viscosity; blasius: in displacement thicknesses")
 
-    profile: Any = table("poiseuille", read, kinds="|".join((*NAMES, "FILE")), meaning=(
+    profile: Any = table_parameter("poiseuille", read, kinds="|".join((*NAMES, "FILE")), meaning=(
         "U(z): a known velocity, or a CSV file with columns z, U and perhaps U_error, the standard error of U"))
     Re: float = parameter(100.0, 0, look=(1.0, 1e5), meaning="Reynolds number of the scales of U(z)")
     bottom: str = choice(  # type: ignore[assignment, misc]
@@ -176,7 +176,7 @@ def _fluid(key):
     """The fluid of profile, edges and heights; raises ParameterError where they make none."""
     velocity, bottom, top, z_low, z_high = key
     open_ = bottom == "decay", top == "decay"
-    curve = smoothed(velocity, *open_, "shear") if isinstance(velocity, Table) else velocity
+    curve = smoothed(velocity, *open_, "shear") if isinstance(velocity, DataTable) else velocity
     low, high = (_height(velocity, side, open_[side], value) for side, value in enumerate((z_low, z_high)))
     if not low < high:
         raise ParameterError(f"shear: z_low must be below z_high (got {low:g} and {high:g})")
@@ -196,7 +196,7 @@ def _height(velocity, side, open_, given):
     """The height of an edge: infinity, the one given, or that of the profile."""
     name, edge, away = (("z_low", "bottom", -inf), ("z_high", "top", inf))[side]
     own = (velocity.low, velocity.high)[side]
-    if given != away and (open_ or isinstance(velocity, Table)):
+    if given != away and (open_ or isinstance(velocity, DataTable)):
         why = f"{edge} = decay: the fluid has no end there" if open_ else f"the table ends at {own:g}"
         raise ParameterError(f"shear: {name} = {given:g}, but {why}; leave it out")
     if open_:

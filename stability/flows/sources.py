@@ -18,7 +18,7 @@ _MARK, _SEAL = "__flow_file__", "__flow_digest__"  # of a module that was import
 _classes: dict[tuple[str, str], None] = {}  # module and name of every class of flows that is none of this package
 
 
-def load(name: str) -> Any:
+def load_class(name: str) -> Any:
     """Return what FILE.py:NAME or PACKAGE.MODULE:NAME stands for; ParameterError where there is no such thing."""
     place, _, cls = name.rpartition(":")
     if name.endswith(".py"):

@@ -14,7 +14,7 @@ from ..equations.layer import Layer, Profile
 from ..numerics.angles import tan_deg
 from . import bed as beds
 from .base import parameter
-from .equilibrium import Saturated, Sheared, Steady, sheared_layers
+from .equilibrium import Equilibrium, Saturated, Steady, sheared_layers
 
 
 @dataclass(frozen=True)
@@ -178,7 +178,8 @@ class Pile(Steady):
             root = end + (start - end) * (1 - s)
             above = (start - end) * s * (start + root) + (self.depth - low)  # height above the bottom
             inertial = law.beyond(self.mu_wall * above + (self.slowest - law.start))
-            return Sheared(2 * (start - end) * root, root**2, (self.mu - self.mu_wall * root**2) * root**2, inertial)
+            stress = (self.mu - self.mu_wall * root**2) * root**2
+            return Equilibrium(2 * (start - end) * root, root**2, stress, inertial)
 
         return state
 

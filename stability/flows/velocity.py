@@ -16,7 +16,7 @@ import numpy as np
 
 from ..checks import shown
 from ..errors import ParameterError
-from .measured import DIGEST, Table, from_arrays, from_file
+from .measured import DIGEST, DataTable, from_arrays, from_file
 
 _WALL_SLOPE = 0.33205733621519630  # f''(0) of 2 f''' + f f'' = 0, f' = 1 far away
 _STEP, _ORDER, _END = 0.25, 26, 14.0  # of its Taylor series; beyond _END, f' = 1 to all digits
@@ -88,7 +88,7 @@ class Function:
 
 def read(name: str, value: Any) -> Any:
     """Return the velocity that a value stands for: a name, a path, a function or arrays; raises ParameterError."""
-    if isinstance(value, Named | Function | Table):
+    if isinstance(value, Named | Function | DataTable):
         return value
     if isinstance(value, str) and value in NAMES:
         return NAMES[value]

@@ -28,7 +28,7 @@ from ..errors import ParameterError
 EPS = np.finfo(float).eps
 LID_FELT = 22.0  # beyond this k depth a lid changes R by about (2 k depth)^2 exp(-2 k depth) < EPS
 LAYERS_PART = 18.0  # beyond this |f| depth a layer at one wall has decayed to EPS at the other
-MODES = 36  # Galerkin modes: R to rounding up to k depth = LID_FELT and |f| depth = LAYERS_PART
+GALERKIN_MODES = 36  # Galerkin modes: R to rounding up to k depth = LID_FELT and |f| depth = LAYERS_PART
 NODES = 0.24 * np.arange(-26, 27)  # trapezoidal rule for weights like exp(-v^2)
 BLOCK = 256  # wavenumbers done at once: bounds the memory
 TURN = np.exp(1j * np.pi / 3)
@@ -245,11 +245,11 @@ def _clamped_basis():
     orthonormal Legendre polynomials of degree j + 1. Every product is summed in Legendre
     coefficients: quadrature would leave ten times the rounding.
     """
-    degree = np.arange(MODES + 5)
+    degree = np.arange(GALERKIN_MODES + 5)
     odd = 2 * degree + 1
     integral = (np.diag(1 / odd[:-1], 1) - np.diag(1 / odd[1:], -1)) / 2
     times_z = (np.eye(odd.size) + np.diag(degree[1:] / odd[:-1], 1) + np.diag(degree[1:] / odd[1:], -1)) / 2
-    second = np.eye(MODES + 1, odd.size, 1) * np.sqrt(odd)
+    second = np.eye(GALERKIN_MODES + 1, odd.size, 1) * np.sqrt(odd)
     second[0, :2] = -1, 3
     first = second @ integral
     first[0, :3] = 0, -1 / 2, 1 / 2

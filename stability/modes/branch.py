@@ -136,8 +136,10 @@ class Branch:
         for k, (nodes, index) in zip(wavenumbers, _intervals(self.segments, wavenumbers), strict=True):
             gaps.setdefault((id(nodes[0]), index), (nodes, index, []))[2].append(k)
         found, between = {}, {}
-        for (segment, _), (nodes, index, inside) in gaps.items():
-            chosen = inside if len(inside) <= _FEW else [inside[0], inside[-1]]
+        last = {segment: max(index for other, index in gaps if other == segment) for segment, _ in gaps}
+        for (segment, number), (nodes, index, inside) in gaps.items():
+            ends = [inside[0], inside[-1]] if number == last[segment] else [inside[0]]
+            chosen = inside if len(inside) <= _FEW else ends
             finer, rest = between.setdefault(segment, ([], []))
             for k in chosen:
                 found[k] = self._between(nodes, index, k, finer[-1] if finer else None)
@@ -265,14 +267,15 @@ def _intervals(segments, wavenumbers):
     """For each wavenumber the segment that contains it, or the one that ends nearest to it, and the node before it."""
     logs, t = [np.log([node.k for node in nodes]) for nodes in segments], np.log(wavenumbers)
     outside = np.array([np.maximum(np.maximum(ends.min() - t, t - ends.max()), 0) for ends in logs])
+    before = [np.clip(np.searchsorted(ends, t, side="right") - 1, 0, max(len(ends) - 2, 0)).tolist() for ends in logs]
+    nearest, gaps = outside.argmin(axis=0).tolist(), outside.min(axis=0).tolist()
     places = []
-    for at, which, far in zip(t, outside.argmin(axis=0).tolist(), outside.min(axis=0), strict=True):
+    for number, (which, far) in enumerate(zip(nearest, gaps, strict=True)):
         nodes, ends = segments[which], logs[which]
         if far:
-            places.append(([nodes[0 if abs(ends[0] - at) < abs(ends[-1] - at) else -1]], 0))
-            continue
-        index = int(np.searchsorted(ends, at, side="right")) - 1
-        places.append((nodes, min(max(index, 0), max(len(nodes) - 2, 0))))
+            places.append(([nodes[0 if abs(ends[0] - t[number]) < abs(ends[-1] - t[number]) else -1]], 0))
+        else:
+            places.append((nodes, before[which][number]))
     return places
 
 

@@ -69,7 +69,7 @@ class Maximum:
         return self.mode.growth_rate
 
 
-def default_mode(flow):
+def crest_mode(flow):
     """Whose crests are meant unless told otherwise: those of all modes, "leading", or in ill-posed flows "surface"."""
     if not flow.has_surface_mode():
         return "leading"
@@ -85,7 +85,7 @@ def search_of(flow, mode):
 
 
 @dataclass(frozen=True)
-class Look:
+class Outlook:
     """What was seen along k: `brackets`, pairs of modes with a crest in between; `ends`, modes at both ends of the
     search; `trouble`, why something may have been overlooked, or None."""
 
@@ -113,7 +113,7 @@ def surface_look(solver, low, high, growing=False):
     nodes = [_heard(finer, node) if index in wanted else node for index, node in enumerate(nodes)]
     brackets = [pair for index, (a, b) in enumerate(pairwise(nodes)) if {index, index + 1} <= wanted
                 for pair in _brackets(rough, a, b)]
-    return Look(brackets, (nodes[:1], [] if lost else nodes[-1:]), lost)
+    return Outlook(brackets, (nodes[:1], [] if lost else nodes[-1:]), lost)
 
 
 def look(solver, low, high):
@@ -121,13 +121,13 @@ def look(solver, low, high):
     parts = [_look(half, low, high) for half in solver.halves]
     trouble = [part.trouble for part in parts if part.trouble]
     first, last = ([mode for part in parts for mode in part.ends[side]] for side in (0, 1))
-    return Look([pair for part in parts for pair in part.brackets], (first, last), trouble[0] if trouble else None)
+    return Outlook([pair for part in parts for pair in part.brackets], (first, last), trouble[0] if trouble else None)
 
 
 def _look(solver, low, high):
     high = min(high, solver.flow.shortest())
     if not low < high:
-        return Look([], ([], []), None)
+        return Outlook([], ([], []), None)
     grid = np.geomspace(low, high, 1 + max(1, ceil(log(high / low) / _STEP))).tolist()
     rough, rung, columns, trouble = solver.rough(ROUGH), 0, [], None
     depth = depth_of(solver.flow)
@@ -140,7 +140,7 @@ def _look(solver, low, high):
             columns.append(None)
     brackets = [pair for here, there in pairwise(columns) if here is not None and there is not None
                 for nodes in _ways(rough, here, there) for a, b in pairwise(nodes) for pair in _brackets(rough, a, b)]
-    return Look(brackets, (columns[0] or [], columns[-1] or []), trouble)
+    return Outlook(brackets, (columns[0] or [], columns[-1] or []), trouble)
 
 
 def depth_of(flow):
@@ -310,7 +310,8 @@ def _moved(solver, near, k, twice=False):
     where that is done `twice`: the difference shows how far rounding scatters slopes where another mode is near.
     """
     try:
-        mode = solver.solve(k, near.rate + (k - near.k) * near.rate_slope, (near.degree, near.x, near.y))
+        mode = solver.solve(k, near.rate + (k - near.k) * near.rate_slope, (near.degree, near.x, near.y),
+                            solver.likely_degree(near))
         if not abs(solver.overlap(near, mode) - 1) < _OVERLAP:
             mode = Walk(solver, near).to(k)
     except ModeLost:

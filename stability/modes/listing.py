@@ -9,8 +9,6 @@ lose digits in strongly sheared layers), that of the full matrix decides.
 """
 
 from dataclasses import dataclass, replace
-from itertools import pairwise
-from math import pi
 
 import numpy as np
 
@@ -18,6 +16,7 @@ from ..errors import ModeLost, naming
 from ..status import doubtful, is_resolved
 from .cutoff import belongs_to_cut
 from .dense import dense_degrees, finite_rates
+from .winding import winding
 
 FIRST = 6  # rung of the degrees at which a look starts
 _MORE = 10  # eigenvalues beside twice the number asked for that are tried where they do not settle
@@ -29,10 +28,6 @@ _FAILURES = 3  # degrees at which a settled list may be found incomplete before 
 _COSTLY = 400  # unknowns of a dense problem beyond which a part of the depth asked for may do
 _BASE = 0.5, 0.3  # degree over terms of the base flow from which on modes of an unbounded fluid are listed; looked at
 _FRUITLESS = 5  # looks at an unbounded fluid after which it is taken to have no modes
-_SIDE = 6, 2, 2, 2  # points along the line and along the other sides of the contour
-_TURN = 1.0  # largest turn (radians) between neighbouring points of the contour
-_FLAT = 0.1  # total turn (radians) below which a list is complete: rounding would leave no such balance
-_HALVINGS = 12  # of a stretch of the contour
 
 
 @dataclass(frozen=True)
@@ -119,7 +114,7 @@ class _Class:
         """How many eigenvalues above the line are not among these modes."""
         known = np.array([mode.rate for mode in modes], dtype=complex)
         below = self.rates[self.rates.real <= line]
-        return _winding(self.solver, self.degree, self.k, np.concatenate((known, below, self.unbound)), line)
+        return winding(self.solver, self.degree, self.k, np.concatenate((known, below, self.unbound)), line)
 
 
 def listed(solver, k, count):
@@ -287,63 +282,3 @@ def _doubt(classes, refined, line, degree):
         if missing:
             return f"the determinant counts {missing:+d} at degree {degree}"
     return None
-
-
-def _winding(solver, degree, k, known, line):
-    """How often the determinant over (rate - known) turns around the rates above the line."""
-    pencil = solver.pencil(degree)
-    weights = pencil.weights(solver.symbols(k))
-    banded = _turns(lambda rate: pencil.factors(weights.value, rate).phase(), known, line, 0)
-    if banded is not None and abs(banded) < _FLAT:
-        return 0
-    a, b = pencil.pair(weights)
-    return round(_turns(lambda rate: _phase(a - rate * b), known, line, _HALVINGS) / (2 * pi))
-
-
-def _phase(matrix):
-    """The determinant over its modulus, rows and columns brought to similar sizes first."""
-    for axis in (1, 0):
-        matrix = matrix / np.abs(matrix).max(axis=axis, keepdims=True)
-    return np.linalg.slogdet(matrix)[0]
-
-
-def _turns(phase, known, line, halvings):
-    """The angle by which phase / (that of the product of rate - known) turns along the contour.
-
-    None where it turns too much between neighbouring points, unless stretches may be halved.
-    """
-    def turn(rate):
-        away = rate - known
-        return phase(rate) * np.prod((away / np.abs(away)).conj())
-
-    corners = _corners(known, line)
-    points = np.concatenate([np.linspace(a, b, count, endpoint=False)
-                             for (a, b), count in zip(pairwise([*corners, corners[0]]), _SIDE, strict=True)]).tolist()
-    points.append(points[0])
-    values = [turn(point) for point in points[:-1]]
-    values.append(values[0])
-    total = 0.0
-    for (a, b), (u, v) in zip(pairwise(points), pairwise(values), strict=True):
-        if not halvings and abs(np.angle(v / u)) > _TURN:
-            return None
-        total += _turned(turn, a, b, u, v, halvings)
-    return total
-
-
-def _corners(known, line):
-    """Corners of the contour, counterclockwise from the upper end of the line: with room for what is not known."""
-    above = known[known.real > line]
-    low, high, right = above.imag.min(initial=0), above.imag.max(initial=0), above.real.max(initial=line)
-    room = max(high - low, right - line, 0.1 * abs(line))
-    return (complex(line, high + room), complex(line, low - room), complex(right + room, low - room),
-            complex(right + room, high + room))
-
-
-def _turned(turn, a, b, u, v, halvings):
-    """The angle by which the phase turns from u at a to v at b, halving the way until it turns little at a time."""
-    angle = float(np.angle(v / u))
-    if abs(angle) < _TURN or not halvings:
-        return angle
-    middle = (a + b) / 2
-    value = turn(middle)
-    return _turned(turn, a, middle, u, value, halvings - 1) + _turned(turn, middle, b, value, v, halvings - 1)

@@ -17,8 +17,8 @@ from threading import Lock
 import numpy as np
 
 KEPT = 8  # branches, some megabytes each
-_FEW = 20  # wavenumbers whose functions of k are evaluated with those of the modes that are known
-_NEAR = 0.5  # largest distance of flows, in the logarithms of their parameters, whose branches resemble one another
+_AHEAD = 20  # wavenumbers whose functions of k are evaluated with those of the modes that are known
+_NEAR = 0.8  # largest distance of flows, in the logarithms of their parameters, whose branches resemble one another
 
 _branches: OrderedDict = OrderedDict()
 _kept: ContextVar = ContextVar("branches", default=_branches)
@@ -42,7 +42,7 @@ def branch_of(solver, make, wavenumbers):
         return
     if known:
         known = _up_to(max(wavenumbers), known)
-        solver.prepare(np.array([*known, *wavenumbers[:_FEW]]))
+        solver.prepare(np.array([*known, *wavenumbers[:_AHEAD]]))
     branch = branch or make(solver, known)
     yield branch
     if branch.uneventful and branch.solver.assembly.small:

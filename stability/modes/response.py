@@ -25,7 +25,7 @@ _STEP = 1e-3  # in log k, of the difference that gives d/dk of a response
 
 
 @dataclass(frozen=True, eq=False)
-class Weights:
+class ShearResponse:
     """What multiplies changes of U and of dU/dz at the points s (points,) of a layer in the change of sigma."""
 
     s: np.ndarray
@@ -51,7 +51,7 @@ def check_base_flow(flow: Any) -> None:
                                  "viscosity too, which this sensitivity leaves out")
 
 
-def weights_of(solver, k, degree, eigen):
+def shear_response(solver, k, degree, eigen):
     """Return the `Weights` of the one layer of a flow for an eigenvalue at k, with vectors of this degree."""
     pencil, (layer,) = solver.pencil(degree), solver.flow.layers(None)
     count = degree + solver.assembly.system.longest + 8  # products are then summed exactly
@@ -62,7 +62,7 @@ def weights_of(solver, k, degree, eigen):
     along, across = (_values(_doubled(eigen.y.conj()[pencil.rows[f"{layer.name}: momentum {row}"]]), count)
                      for row in ("along", "across"))
     scale = 1j * k * width * base.rho * base.dz / count
-    return Weights(s, -scale * (along * v + width * across * w), scale * along * w,
+    return ShearResponse(s, -scale * (along * v + width * across * w), scale * along * w,
                    np.broadcast_to(base.dz, s.shape))
 
 
@@ -77,7 +77,7 @@ def _values(series, count):
 
 def gradient(solver, k, degree, eigen):
     """Return d sigma / d c_j (terms,) in the coefficients of the fit of a flow with `data`."""
-    known = weights_of(solver, k, degree, eigen)
+    known = shear_response(solver, k, degree, eigen)
     z = solver.flow.heights(known.s)
     data = solver.flow.data
     return known.on_U @ data.basis(z) + known.on_dU @ data.slopes(z)
@@ -130,7 +130,7 @@ def _beside(solver, mode, step):
 
 def spread_of(solver, k, degree, eigen, cut):
     """Bound of the change of sigma where U is a series that leaves out `cut` at most, and U' its slope."""
-    known = weights_of(solver, k, degree, eigen)
+    known = shear_response(solver, k, degree, eigen)
     on_U = known.on_U + _differences(len(known.s)).T @ (known.on_dU / known.slope)
     return float(cut * np.abs(on_U).sum())
 

@@ -14,7 +14,7 @@ from ..flows.base import check_flow
 from ..flows.rheology import condition, ill_posed, short_wave_growth
 from ..numerics.threads import one_thread
 
-POINTS = 201  # heights of a layer at which C is looked at
+LOOKED_AT = 201  # heights of a layer at which C is looked at
 
 _INSIDE = 1e-9  # distance from an edge, in s, at which a limit is taken
 _PARTS, _CUTS = 64, 9  # 64^9 = 2^54 parts of an interval: as many as double precision tells apart
@@ -64,7 +64,7 @@ class WellPosedness:
 
 
 @one_thread
-def well_posedness(flow, points=POINTS):
+def well_posedness(flow, points=LOOKED_AT):
     """Return the `WellPosedness` of a flow, at `points` points of each of its layers.
 
     >>> from stability import flows
@@ -87,13 +87,13 @@ def well_posedness(flow, points=POINTS):
     return WellPosedness(flow, tuple(names.tolist()), heights, conditions, growths, ills, tuple(strips))
 
 
-def ill_posed_strips(flow, points=POINTS):
+def ill_posed_strips(flow, points=LOOKED_AT):
     """Return the ill-posed `Strip`s of a flow, as far as they show at as many heights of each layer."""
     return tuple(strip for layer, ill in _looked_at(flow, points) if ill.any()
                  for strip in _strips(layer, _points(points), ill))
 
 
-def ill_posed_somewhere(flow, points=POINTS):
+def ill_posed_somewhere(flow, points=LOOKED_AT):
     """Whether some layer of the flow is ill posed at one of as many heights."""
     try:
         hash(flow)

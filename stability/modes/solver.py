@@ -16,8 +16,9 @@ from .mode import Mode
 from .response import data_error, spread_of
 
 _FAR_BELOW = 1e-15  # relative truncation error that is aimed at with the default tolerance
-_VECTOR = 0.01  # error of vectors without bars, in units of the tolerance
+_VECTOR, _ROUGHEST = 0.01, 1e-6  # error of vectors without bars, in units of the tolerance; the largest
 _GLANCE = 0.3  # relative distance of a rate from a long-wave limit at which a mode may be meant
+_SCATTER = 40.0  # error of a slope from vectors right to rounding, in units of error times 1 or 1/k (measured)
 _LEAST = 32  # degree of the smallest table of entries
 _SMALL = 1024  # degree times terms of the longest series up to which layouts, some megabytes each, are kept ...
 _LAYOUTS, _TABLES = 48, 8  # ... for other flows, and how many
@@ -93,7 +94,7 @@ class Solver:
         self.bars = bars
         self.accuracy, self.tolerance = accuracy, (tolerance := accuracy.tolerance)
         self.truncation = 0.5 * tolerance if tolerance > TOLERANCE else min(0.5 * tolerance, _FAR_BELOW)
-        self.vectors = VECTOR if bars else max(VECTOR, _VECTOR * tolerance)
+        self.vectors = VECTOR if bars else max(VECTOR, min(_VECTOR * tolerance, _ROUGHEST))
         self.degrees = accuracy.degrees
         self.assembly = assembly or Assembly(flow)
         self.pencil = self.assembly.pencil
@@ -238,9 +239,10 @@ class Solver:
         if not error <= self.tolerance * abs(sigma):  # nor where it is not a number
             status = unresolved(f"error {error:.1e} exceeds tolerance at degree {degree}")
         slope = width * eigen.slope + (1 + self.flow.order) * sigma / k
+        scatter = width * eigen.left + min(width * eigen.scatter, _SCATTER * error * max(1.0, 1 / k))
         return Mode(self.flow, float(k), complex(sigma), float(error), complex(slope), degree, status,
                     float(truncation), float(rounding), eigen.rate, eigen.slope, eigen.x, eigen.y,
-                    self._data_error(k, degree, eigen))
+                    self._data_error(k, degree, eigen), float(scatter))
 
     def _data_error(self, k, degree, eigen):
         """What the errors of a measured base flow do to the growth rate, None without such errors or without bars."""

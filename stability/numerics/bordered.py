@@ -6,6 +6,8 @@
 The interior is factorised as a band (LAPACK gbtrf); the border follows by block elimination.
 """
 
+from functools import cached_property
+
 import numpy as np
 from scipy.linalg import lapack
 from scipy.sparse import csr_array
@@ -125,10 +127,7 @@ class Factors:
 
     def phase(self):
         """Return the determinant over its modulus (scales are positive: they leave it alone)."""
-        diagonal = self._lu[self._lower + self._upper]
-        swaps = np.count_nonzero(self._pivots != np.arange(len(self._pivots)))
-        phases = np.prod(diagonal / np.abs(diagonal))
-        return (-1) ** swaps * phases / abs(phases) * np.linalg.slogdet(self._schur)[0]
+        return _phase(self._lu[self._lower + self._upper], self._pivots) * np.linalg.slogdet(self._schur)[0]
 
     def solve(self, f):
         """Return z with M z = f, (size, points) or (size,)."""
@@ -158,6 +157,13 @@ class Factors:
         return self._solve(self._lu, self._lower, self._upper, right, self._pivots, trans=trans)[0]
 
 
+def _phase(diagonal, pivots):
+    """The determinant over its modulus of a band with this diagonal of U."""
+    swaps = np.count_nonzero(pivots != np.arange(len(pivots)))
+    phases = np.prod(diagonal / np.abs(diagonal))
+    return (-1) ** swaps * phases / abs(phases)
+
+
 class ManyFactors:
     """The `Factors` at many points, weights (parts, points); right-hand sides are the columns of arrays (size, points).
 
@@ -172,11 +178,19 @@ class ManyFactors:
         self._factors = [factor(one.T, *self._shape, overwrite_ab=True)[:2] for one in band]
         self._bottom = bottom[..., : self._interior]
         self._coupled = np.array([self._inner(index, one) for index, one in enumerate(right)])
-        schur = bottom[..., self._interior:] - self._bottom @ self._coupled
+        self._schur = bottom[..., self._interior:] - self._bottom @ self._coupled
+
+    def phases(self):
+        """Return the determinants over their moduli (points,)."""
+        bands = [_phase(lu[sum(self._shape)], pivots) for lu, pivots in self._factors]
+        return np.array(bands) * np.linalg.slogdet(self._schur)[0]
+
+    @cached_property
+    def _border(self):
         try:
-            self._border = np.linalg.inv(schur)
+            return np.linalg.inv(self._schur)
         except np.linalg.LinAlgError:
-            self._border = np.full_like(schur, np.nan)
+            return np.full_like(self._schur, np.nan)
 
     def solve(self, f):
         """Return z with M z = f at every point."""

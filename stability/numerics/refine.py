@@ -12,7 +12,7 @@ At many wavenumbers each has its own factorisation and all else is done together
 (size, points) then, and plain (size,) at one.
 """
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -29,13 +29,14 @@ VECTOR = 1e-9  # error of a vector, and so of the slope, that is accepted
 _OFFSET = 1e-3  # of a factorisation for corrections from its rate: it must not be singular
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Eigen:
     """Eigenvalues of a pencil at several points, arrays (points,) and vectors (points, size), or at a single one.
 
-    `rate` with its `slope` in k; `truncation`, the standard deviation `rounding` and the `spread` from
-    uncertain symbols and coefficients, all in units of the rate; `x`, `y` right and left vectors with y^H B x = 1;
-    `settled` tells where the quotient is converged to rounding.
+    `rate` with its `slope` in k, `scatter` being what the last step of the vectors did to that and `left` what steps to
+    come would do; `truncation`, the standard deviation `rounding` and the `spread` from uncertain symbols and
+    coefficients, all in units of the rate; `x`, `y` right and left vectors with y^H B x = 1; `settled` tells where the
+    quotient is converged to rounding.
     """
 
     rate: np.ndarray
@@ -43,13 +44,17 @@ class Eigen:
     truncation: np.ndarray
     rounding: np.ndarray
     spread: np.ndarray
+    scatter: np.ndarray
+    left: np.ndarray
     x: np.ndarray
     y: np.ndarray
     settled: np.ndarray
 
     def split(self):
         """Return the eigenvalues of the points, each on its own."""
-        return [Eigen(*values) for values in zip(*(getattr(self, field.name) for field in fields(self)), strict=True)]
+        bars = (getattr(self, name).tolist() for name in ("truncation", "rounding", "spread", "scatter", "left"))
+        return [Eigen(*values) for values in zip(self.rate, self.slope, *bars, self.x, self.y, self.settled.tolist(),
+                                                 strict=True)]
 
 
 def refine(pencil, weights, rate, x=None, y=None, bars=True, accuracy=VECTOR):
@@ -64,9 +69,9 @@ def refine(pencil, weights, rate, x=None, y=None, bars=True, accuracy=VECTOR):
         if pencil.real and not np.imag(rate):
             rate, x, y = np.real(rate), x.real, y.real
         factors = _factors(pencil, weights.value, rate)
-        x, y, settled = _iterate(b, factors, x, y, accuracy)
+        x, y, steps, settled = _iterate(b, factors, x, y, accuracy)
         if settled:
-            found = _quotient(pencil, weights, x, y, settled, bars)
+            found = _quotient(pencil, weights, x, y, steps, settled, bars)
             return _twice(pencil, weights, found, bars) if factors.uneven else found
         rate = _rate(pencil, weights.value * pencil.stack.brackets(y, pencil.stack.times(x)))
         if not np.isfinite(rate):
@@ -86,32 +91,37 @@ def refine_many(pencil, weights, rate, x, y, bars=True, accuracy=VECTOR):
     if pencil.real and not np.any(np.imag(rate)):
         rate, x, y = rate.real, x.real, y.real
     x, y = (np.ascontiguousarray(vectors, np.result_type(vectors, rate)) for vectors in (x, y))
+    steps = [(np.zeros_like(vectors), np.zeros(len(rate))) for vectors in (x, y)]
     settled, left = np.zeros(len(rate), bool), np.arange(len(rate))
     for _ in range(_ROUNDS):
         value = weights.value[:, left]
         factors = pencil.factors(value, rate[left])
-        x[:, left], y[:, left], settled[left] = _iterate(
+        x[:, left], y[:, left], last, settled[left] = _iterate(
             pencil.b_products(value), factors, x[:, left], y[:, left], accuracy)
+        for (step, share), (new, part) in zip(steps, last, strict=True):
+            step[:, left], share[left] = new, part
         settled[left] &= ~factors.uneven
         rate = _rate(pencil, weights.value * pencil.stack.brackets(y, pencil.stack.times(x)))
         left = left[~settled[left] & ~factors.uneven]
         if not len(left):
             break
-    return _quotient(pencil, weights, x, y, settled, bars)
+    return _quotient(pencil, weights, x, y, steps, settled, bars)
 
 
 def _iterate(b, factors, x, y, accuracy):
-    """Two inverse iterations from either side; return both vectors, and whether their quotient is settled.
+    """Two inverse iterations from either side; return vectors, their last steps, and whether the quotient is settled.
 
     `b` are the products with B from the right and from the left.
     """
-    x, x_error = _iterated(b[0], factors.solve, x)
-    y, y_error = _iterated(b[1], factors.solve_left, y)
-    return x, y, _settled(x_error, y_error, accuracy)
+    x, x_step, x_error = _iterated(b[0], factors.solve, x)
+    y, y_step, y_error = _iterated(b[1], factors.solve_left, y)
+    return x, y, (x_step, y_step), _settled(x_error, y_error, accuracy)
 
 
 def _iterated(b, solve, vector):
-    """Two inverse iterations with one factorisation; return the vector and an estimate of its error.
+    """Two inverse iterations with one factorisation; return the vector, the last step, and an estimate of the error.
+
+    The step comes with the share of it that steps to come would make.
 
     Vectors are scaled by one component. The second step shrinks what the first one changed by the
     ratio of the distances to the wanted and the next eigenvalue, and so will the next.
@@ -123,8 +133,9 @@ def _iterated(b, solve, vector):
     start, first = vector / vector[pivot], first / first[pivot]
     second = solve(b(first))
     second = second / second[pivot]
-    change, error = _converging(second - first, second, _size(first - start) / _size(second))
-    return second, error
+    last = second - first
+    change, error = _converging(last, second, _size(first - start) / _size(second))
+    return second, (last, error / np.maximum(change, _TINY)), error
 
 
 def _twice(pencil, weights, found, bars):
@@ -148,7 +159,7 @@ def _corrected(pencil, weights, found, bars):
     factors = _factors(pencil, value, rate * (1 + _OFFSET))
     bx, by = (product(vector) for product, vector in zip(pencil.b_products(value), (x, y), strict=True))
     along_x, along_y = x / (by @ x), y / (by @ x)
-    x_change = y_change = 0.0
+    x_change = y_change = x_error = y_error = 0.0
     for _ in range(_CORRECTIONS):
         products = stack.times(x)
         rate = _rate(pencil, value * stack.brackets(y, products))
@@ -161,7 +172,8 @@ def _corrected(pencil, weights, found, bars):
         settled = _settled(x_error, y_error)
         if settled:
             break
-    return _quotient(pencil, weights, x, y, settled, bars)
+    steps = (dx, x_error / max(x_change, _TINY)), (dy, y_error / max(y_change, _TINY))
+    return _quotient(pencil, weights, x, y, steps, settled, bars)
 
 
 @lru_cache(maxsize=32)
@@ -199,8 +211,11 @@ def _rate(pencil, value):
     return -value[: pencil.first_b].sum(axis=0) / value[pencil.first_b:].sum(axis=0)
 
 
-def _quotient(pencil, weights, x, y, settled, bars):
-    """Rayleigh quotients of the pairs (y^H, x), (size, points) or of one (size,), with slope in k and errors."""
+def _quotient(pencil, weights, x, y, steps, settled, bars):
+    """Rayleigh quotients of the pairs (y^H, x), (size, points) or of one (size,), with slope in k and errors.
+
+    `steps` are the last ones of both vectors, with the shares of them that steps to come would make.
+    """
     stack, first = pencil.stack, pencil.first_b
     products = stack.times(x)
     brackets = stack.brackets(y, products)
@@ -213,12 +228,27 @@ def _quotient(pencil, weights, x, y, settled, bars):
     spread = (weights.spread * np.abs(brackets * power)).sum(axis=0) / np.abs(norm)
     if pencil.cuts:
         spread += pencil.cut(weights.value * power, y, x)
-    variance = np.zeros(norm.shape)
+    variance, scatter, left = (np.zeros(norm.shape) for _ in range(3))
     if bars:
+        for (_, share), change in zip(steps, _changes(pencil, weights, slope, power, (y, products), (
+                steps[0][0], steps[1][0] / norm)), strict=True):
+            scatter, left = scatter + change, left + share * change
         variance += stack.squares(weights.value * power, y, x)  # of matrix entries
         variance += square(value * power).sum(axis=0) / square(norm)  # of the weights, common to a part
     tail = np.abs(pencil.tail.total(pencil.tail.spread(weights.value * power), pencil.tail.times(x)))
     beyond = tail.reshape(len(pencil.last), -1, *norm.shape).sum(axis=1)
     truncation = (beyond * np.abs(y[pencil.last]).max(axis=1)).sum(axis=0)
     vectors = (np.ascontiguousarray(rows.T) for rows in (x, y.conj()))
-    return Eigen(rate, slope, truncation, _EPS * np.sqrt(variance), spread, *vectors, settled)
+    return Eigen(rate, slope, truncation, _EPS * np.sqrt(variance), spread, scatter, left, *vectors, settled)
+
+
+def _changes(pencil, weights, slope, power, pair, steps):
+    """Yield what steps dx and dy of the vectors of a `pair` (y, products with x), y B x = 1, do to the slope in k.
+
+    With s = y L' x / (y B x), where L' is the derivative of A - rate B in k at a fixed rate, a change of x by dx makes
+    ds = y (L' - s B) dx, and one of y the same from the left. The rate does not change, to first order.
+    """
+    (y, products), (dx, dy), stack = pair, steps, pencil.stack
+    for brackets in (stack.brackets(y, stack.times(dx)), stack.brackets(dy, products)):
+        shift = (weights.value * brackets)[pencil.first_b:].sum(axis=0)  # -y B dx
+        yield np.abs((weights.slope * brackets * power).sum(axis=0) + slope * shift)

@@ -12,7 +12,7 @@ import numpy as np
 
 from . import chebyshev
 
-MOST = 4096  # sample points: what has not ended by then is a kink, a step or noise
+MOST_SAMPLES = 4096  # sample points: what has not ended by then is a kink, a step or noise
 
 _EPS = np.finfo(float).eps
 _FIRST = 64  # sample points of the first look, three times what the flows of this package need
@@ -74,7 +74,7 @@ def fit(sample, together=False):
         cut, met = _left_out(values, chopped, largest, short)
         if (ended & met).all():
             return Fit(_trimmed(chopped, kept), cut)
-        if count == MOST:
+        if count == MOST_SAMPLES:
             raise _rough(values, series, chopped, ended, met)
         count *= 2
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 SCALES = "L, V, S: scales of length, velocity and stress (stability flows FLOW); 1: a number"
 PARAMETERS = "NAME"  # stands for the column of a parameter of the flow
-DEGREES = "degree_N"  # stands for degree_16, degree_24 ...
+ANY_DEGREE = "degree_N"  # stands for degree_16, degree_24 ...
 
 
 class Column(NamedTuple):
@@ -74,7 +74,7 @@ COLUMNS = {
     "short_waves": Column("growth rate of the shortest waves over k^2", "V L"),
     "ill_posed": Column("yes where short waves grow without bound", ""),
     "surface_mode": Column("growth rate of the slow surface mode", "V/L"),
-    DEGREES: Column("largest growth rate of all modes at Chebyshev degree N", "V/L"),
+    ANY_DEGREE: Column("largest growth rate of all modes at Chebyshev degree N", "V/L"),
 }
 
 _VARYING = "error", "data_error", "maxima"  # what they mean depends on the verb
@@ -97,7 +97,7 @@ BY_VERB = {
             "growth_error", "k_error", "degree", "maxima", "second_k_max", "second_growth_rate", "status"),
     "sensitivity": ("parameter", "value", "d_growth_rate", "d_phase_speed", "elasticity", "error", "status"),
     "compare": ("method", "setting", "growth_rate", "frequency", "error", "reported", "seconds", "unknowns", "status"),
-    "wellposed": ("layer", "height", "C", "short_waves", "ill_posed", "k", "surface_mode", DEGREES, "status"),
+    "wellposed": ("layer", "height", "C", "short_waves", "ill_posed", "k", "surface_mode", ANY_DEGREE, "status"),
 }
 _BOUNDED = {"base": "dU", "kmax": "k_max", "sensitivity": "the derivative of sigma",
             "neutral": "the parameter solved for", "critical": "the parameter solved for",
@@ -126,7 +126,7 @@ def column(name: str, verb: str = "dispersion", bounded: str | None = None) -> C
         return _NUMBER_OF_MAXIMA if verb == "map" else _LIST_OF_MAXIMA
     if name == PARAMETERS:
         return Column(_PARAMETER_OF[verb], "its own")
-    return COLUMNS[_plain(name)]
+    return COLUMNS[_explained_as(name)]
 
 
 def known(name: str) -> bool:
@@ -135,11 +135,11 @@ def known(name: str) -> bool:
     >>> known("degree_24"), known("shields")
     (True, False)
     """
-    return name in _VARYING or _plain(name) in COLUMNS
+    return name in _VARYING or _explained_as(name) in COLUMNS
 
 
-def _plain(name):
-    return DEGREES if name.startswith("degree_") else name
+def _explained_as(name):
+    return ANY_DEGREE if name.startswith("degree_") else name
 
 
 def explained(verb: str) -> str:

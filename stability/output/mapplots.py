@@ -14,7 +14,7 @@ from .style import GREY, RED
 
 HATCHES = {"not resolved": "////", "stable": "..", "outgrown by an internal mode": "xxxx"}
 _SIGNED, _RISING = "RdBu_r", "viridis"
-_FEW, _MANY = (2, 5), (1.5, 2, 3, 5, 7)  # ticks between powers of ten
+_FEW_TICKS, _MANY = (2, 5), (1.5, 2, 3, 5, 7)  # ticks between powers of ten
 _LEAST_SHADE = 1e-2  # of the largest: below, colours of signed values are linear
 
 
@@ -143,7 +143,7 @@ def _scale(axes, which, values):
         if not spans_decades(values):
             axis = {"x": axes.xaxis, "y": axes.yaxis}[which]
             axis.set_major_formatter(StrMethodFormatter("{x:g}"))
-            axis.set_minor_locator(LogLocator(subs=_FEW if max(values) > 5 * min(values) else _MANY))
+            axis.set_minor_locator(LogLocator(subs=_FEW_TICKS if max(values) > 5 * min(values) else _MANY))
             axis.set_minor_formatter(StrMethodFormatter("{x:g}"))
 
 

@@ -23,7 +23,7 @@ def encode(record: "Record") -> bytes:
     buffer = io.BytesIO()
     with netcdf_file(buffer, "w") as file:
         for name, value in attributes_of(record).items():
-            setattr(file, _RENAMED.get(name, name), _plain(value))
+            setattr(file, _RENAMED.get(name, name), _attribute(value))
         for variable in variables_of(record):
             _add(file, *variable)
         file.flush()
@@ -48,7 +48,7 @@ def variables_of(record: "Record") -> Iterator[tuple[str, tuple[str, ...], np.nd
             yield part, dimensions, numbers, {**_about(record, name, part), **units}
 
 
-def _plain(value: Any) -> Any:
+def _attribute(value: Any) -> Any:
     """Text as bytes in UTF-8, numbers in double precision: the writer would take single."""
     return value.encode() if isinstance(value, str) else np.float64(value)
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..checks import check_file_name
 from ..errors import ParameterError
-from ..status import read
+from ..status import status_of
 from .csv_text import no_nan, parse_csv, read_bytes, text_of
 from .stored import Stored
 
@@ -57,7 +57,7 @@ def _rows(columns):
 
 def _told(row):
     """A row with its status as one, not as a text."""
-    return {**row, "status": read(row["status"])} if isinstance(row.get("status"), str) else row
+    return {**row, "status": status_of(row["status"])} if isinstance(row.get("status"), str) else row
 
 
 # -- JSON ------------------------------------------------------------------------------------------------

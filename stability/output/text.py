@@ -25,7 +25,7 @@ _LAYOUTS = ((10, 2), (8, 2), (6, 2), (6, 1), (4, 1))  # digits and spaces betwee
 _ROUGH = "error", "reported", "seconds", "condition"  # endings of the columns that take two digits
 _FIRST = ("flow", "method", "version")  # comments above CSV
 _LABELS = 2  # columns that every block of a split table begins with
-_FEW = 4  # digits at which lists give way to their length
+_FEW_DIGITS = 4  # digits at which lists give way to their length
 _PREFIX = 100  # bytes of a file's name that its temporary file shows
 
 
@@ -49,18 +49,18 @@ def render(form: str, header: dict[str, Any], rows: list[Row], width: int | None
     `header` is that of `header_of`, and whatever else belongs to the whole result; `width` is for `table`.
     """
     if form == "json":
-        return json.dumps(_plain({**header, "rows": rows}), indent=1, allow_nan=False) + "\n"
+        return json.dumps(_json_value({**header, "rows": rows}), indent=1, allow_nan=False) + "\n"
     if form == "csv":
         return _csv(header, rows)
     return table(rows, width)
 
 
-def _plain(value):
+def _json_value(value):
     """JSON has no infinity: write it as the string that the command line takes."""
     if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
+        return {key: _json_value(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_plain(item) for item in value]
+        return [_json_value(item) for item in value]
     return str(value) if isinstance(value, float) and isinf(value) else value
 
 
@@ -74,7 +74,7 @@ def _csv(header, rows):
     writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
     writer.writeheader()
     for row in rows:
-        writer.writerow({key: json.dumps(_plain(value)) if isinstance(value, list) else value
+        writer.writerow({key: json.dumps(_json_value(value)) if isinstance(value, list) else value
                          for key, value in row.items()})
     return text.getvalue()
 
@@ -137,7 +137,7 @@ def html_table(title: str, rows: list[Row], gap: int | None = None) -> str:
 def _cell(key, value, digits):
     if value is None:
         return "-"
-    if isinstance(value, list) and digits <= _FEW:
+    if isinstance(value, list) and digits <= _FEW_DIGITS:
         return str(len(value))
     if isinstance(value, list):
         return " ".join(f"({k:.6g}, {growth:.4g})" for k, growth in value) or "-"

@@ -19,7 +19,7 @@ from ..status import RESOLVED
 HEIGHT = Axis("z", "height $z$")
 VELOCITY, SHEAR_RATE = Axis("U", "velocity $U$"), Axis("dU", "shear rate $U'$")
 INERTIAL_NUMBER, STRESS = Axis("inertial_number", "inertial number $I$"), Axis("shear_stress", "stress")
-POINTS, MOST = 41, 100_000  # heights of a layer: usual, largest number
+HEIGHTS, MOST_HEIGHTS = 41, 100_000  # heights of a layer: usual, largest number
 
 
 @dataclass(frozen=True, repr=False)
@@ -86,7 +86,7 @@ class BaseFlow(Record):
         return [*fluxes, *self.flow.remarks(), *(f"scales: {self.flow.scales}",)]
 
 
-def base_flow(flow: Any, points: int = POINTS) -> BaseFlow:
+def base_flow(flow: Any, points: int = HEIGHTS) -> BaseFlow:
     """Return the `BaseFlow` at `points` heights of each layer.
 
     >>> from stability import flows
@@ -97,7 +97,7 @@ def base_flow(flow: Any, points: int = POINTS) -> BaseFlow:
     a profile is rough.
     """
     check_flow(flow)
-    points = check_integer(points, "points", 2, MOST)
+    points = check_integer(points, "points", 2, MOST_HEIGHTS)
     s, bottom = np.linspace(0, 1, points), float(flow.lowest)
     names, parts, flux = [], [], {}
     for layer in flow.layers(numbers(flow)):

@@ -32,7 +32,7 @@ COLLOCATION_DEGREES = tuple(degree for degree in DEGREES if degree <= 128)
 DENSE_DEGREES = (8, 12, 16, 24, 32, 48, 64, 96, 128)
 RESIDUALS = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 THESIS_RESIDUALS = (1e-3, 1e-4, 1e-5)
-POINTS, SPAN = 201, 2.0  # of the sweep, from k / SPAN to k * SPAN
+SWEEP_POINTS, SPAN = 201, 2.0  # of the sweep, from k / SPAN to k * SPAN
 
 _SECONDS = 0.15  # spent on repeating each measurement, at least
 _REPEATS = 3
@@ -110,7 +110,7 @@ class Comparison(Record):
         """Relative error against time, a curve for each method; thin what it reports."""
         scale, floor = abs(self.reference.sigma), np.finfo(float).eps / 2  # errors below are drawn there
         curves: list[Curve] = []
-        for method in METHODS:
+        for method in MEASURED:
             rows = [one for one in self.measurements if one.method == method]
             if not rows:
                 continue
@@ -145,15 +145,15 @@ def compare(flow, k, methods=None, report=None, *, known=None, points=None, budg
 def comparisons(flow, k, methods=None, report=None, *, known=None, points=None, budget=inf):
     """Yield the comparison of `compare` as it grows: before the first measurement, and after each."""
     begun = monotonic()
-    chosen = [check_options("methods", name, tuple(METHODS)) for name in (METHODS if methods is None else methods)]
+    chosen = [check_options("methods", name, tuple(MEASURED)) for name in (MEASURED if methods is None else methods)]
     mode = one_thread(target)(check_flow(flow), k)
     known = known or reference(mode)
-    total = sum(len(settings()) for settings, _ in (METHODS[name] for name in chosen))
+    total = sum(len(settings()) for settings, _ in (MEASURED[name] for name in chosen))
     found = Comparison(flow, float(k), known, (), (), tuple(chosen))
     yield found
     count = 0
     for name in chosen:
-        settings, method = METHODS[name]
+        settings, method = MEASURED[name]
         last = 0.0
         for setting in settings():
             count += 1
@@ -162,7 +162,7 @@ def comparisons(flow, k, methods=None, report=None, *, known=None, points=None, 
             if now - begun + _SLOWER * last > budget:
                 found = replace(found, skipped=(*found.skipped, (name, label)))
             else:
-                result = one_thread(method)(flow, mode, setting, points or POINTS)
+                result = one_thread(method)(flow, mode, setting, points or SWEEP_POINTS)
                 found, last = _with(found, name, label, result), monotonic() - now
             if report:
                 report(count, total)
@@ -224,12 +224,13 @@ def _collocation(flow, mode, degree, points):
 def _followed(flow, mode, degree, points):
     """The mode at mode.k after a sweep at one degree, all included."""
     solver = Solver(flow, Accuracy(1.0, degree))
-    solver.degrees = (degree,)
+    rough = solver.rough(1.0)
+    solver.degrees = rough.degrees = (degree,)
     sweep = wavenumbers(mode.k, points)
     solver.prepare(sweep)
     first = sweep[0]
-    start = surface_mode(solver, first) if flow.has_surface_mode() else solver.solve(first, _guess(mode, first))
-    found, lost = Branch(solver, start, rough=solver).at(sweep)
+    start = surface_mode(rough, first) if flow.has_surface_mode() else rough.solve(first, _guess(mode, first))
+    found, lost = Branch(solver, start, rough).at(sweep)
     for reason in lost.values():
         raise ModeLost(reason)
     return found[mode.k]
@@ -242,7 +243,7 @@ def _guess(mode, k):
 
 def wavenumbers(k, points=None):
     """The sweep, with k in its middle."""
-    points = points or POINTS
+    points = points or SWEEP_POINTS
     values = np.geomspace(k / SPAN, k * SPAN, points)
     values[points // 2] = k
     return values
@@ -285,7 +286,7 @@ def _continued(flow, mode, residual, setting, points):
     return point.sigma, point.error, seconds / points, point.unknowns
 
 
-METHODS = {  # settings, read when asked for, and the measurement of one
+MEASURED = {  # settings, read when asked for, and the measurement of one
     "collocation": (lambda: COLLOCATION_DEGREES, _collocation),
     "dense": (lambda: DENSE_DEGREES, _dense),
     "bvp": (lambda: RESIDUALS, _bvp),

@@ -19,7 +19,7 @@ from ..output.panels import OTHERS, POINTS, WAVENUMBER, Axis, Curve, Panel, scal
 from ..output.record import Record
 from ..output.symbols import axis_label, symbol_of, value_text
 from ..output.text import Row, measured
-from ..status import Status, inside, is_resolved, unresolved
+from ..status import Status, as_inside, is_resolved, unresolved
 from .ridges import Landscape
 from .thresholds import critical_zeros
 
@@ -211,7 +211,7 @@ def _critical(land, long_wave):
     settings = {**settings_of(land), **({"long_wave": "yes"} if long_wave else {})}
     found = critical_zeros(land, long_wave)
     points = [point_of(land, zero, settings) for zero in found.boundaries]
-    points += [replace(point, status=inside(point.status)) for point in
+    points += [replace(point, status=as_inside(point.status)) for point in
                (point_of(land, zero, settings) for zero in found.inner)]
     if found.boundaries:
         return replace(points[0], others=tuple(points[1:]), remark=found.remark)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import ModeLost, ParameterError
 from ..modes.branch import surface_branch
-from ..modes.crests import default_mode, depth_of
+from ..modes.crests import crest_mode, depth_of
 from ..modes.listing import near_neutral
 from ..modes.memory import branch_of
 from ..numerics.walker import Pace, Walker, towards
@@ -48,7 +48,7 @@ def zeros_at(land: Landscape, k: float):
 def _modes(plane, k, value):
     """Points at k of the modes that matter at a value."""
     solver = plane.solver(value)
-    if default_mode(plane.flow_at(value)) == "surface":
+    if crest_mode(plane.flow_at(value)) == "surface":
         with branch_of(solver, surface_branch, [k]) as branch:
             found, lost = branch.at([k])
         if lost:

@@ -22,8 +22,7 @@ from ..numerics.threads import one_thread
 from ..output.panels import GROWTH_RATE, LINE, PHASE_SPEED, POINTS, WAVENUMBER, Axis, Curve, Panel, scale_of
 from ..output.record import Record
 from ..output.text import Row, measured
-from ..status import INTERRUPTED, LOST, Status, is_resolved
-from ..status import outgrown as told_outgrown
+from ..status import INTERRUPTED, LOST, Status, as_outgrown, is_resolved
 from .outgrown import Outgrown, outgrown
 
 if TYPE_CHECKING:
@@ -89,7 +88,7 @@ class DispersionRelation(Eigenvalues, Record):
         return tuple(map(self._status, self.modes))
 
     def _status(self, mode: Mode) -> Status:
-        return told_outgrown(mode.status) if self.rival and mode.k >= self.rival.k else mode.status
+        return as_outgrown(mode.status) if self.rival and mode.k >= self.rival.k else mode.status
 
     @property
     def subtitle(self) -> str:
@@ -160,7 +159,7 @@ class DispersionRelation(Eigenvalues, Record):
 
     def _lost(self, k: float) -> Status:
         status = INTERRUPTED if self.lost.get(k) == INTERRUPTED else LOST
-        return told_outgrown(status) if self.rival and k >= self.rival.k else status
+        return as_outgrown(status) if self.rival and k >= self.rival.k else status
 
 
 def dispersion(flow: "Flow", k: "ArrayLike", mode: str | None = None, *, tolerance: float = TOLERANCE,
@@ -185,7 +184,7 @@ def dispersion(flow: "Flow", k: "ArrayLike", mode: str | None = None, *, toleran
     """
     strict, rivals = check_flag("strict", strict), check_flag("rivals", rivals)
     parts = list(dispersion_parts(flow, k, mode, tolerance=tolerance, max_degree=max_degree))
-    relation = judged(joined(parts, check_wavenumbers(k).tolist()), rivals)
+    relation = judged(joined_relation(parts, check_wavenumbers(k).tolist()), rivals)
     if strict:
         for reason in relation.lost.values():
             raise ModeLost(reason)
@@ -211,7 +210,7 @@ def dispersion_parts(flow: "Flow", k: "ArrayLike", mode: str | None = None, *, t
                                  settings=accuracy.settings)
 
 
-def joined(parts: list[DispersionRelation], asked: list[float]) -> DispersionRelation:
+def joined_relation(parts: list[DispersionRelation], asked: list[float]) -> DispersionRelation:
     """Return the parts as one relation at the wavenumbers `asked`, in that order."""
     found = {mode.k: mode for part in parts for mode in part.modes}
     lost: dict[float, str] = {}

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..errors import ParameterError, StabilityError
 from ..flows.base import check_flow, numeric, span_of
-from ..modes.crests import default_mode
+from ..modes.crests import crest_mode
 from ..modes.eigenfunction import Eigenfunction
 from ..output.panels import GROWTH_RATE, PHASE_SPEED, WAVENUMBER
 from ..output.plots import draw
@@ -206,7 +206,7 @@ class Explorer:
             self._bars.set_data(np.repeat([mode.k for mode in modes], 3), np.ravel(ends))
         peaks = self.best.maxima if self.best else ()
         self._peak.set_data([peak.k for peak in peaks], [peak.growth_rate for peak in peaks])
-        if default_mode(self.flow) == "surface":
+        if crest_mode(self.flow) == "surface":
             self._limit.set_data(self.k, np.real(self.flow.long_wave(self.k)))
 
     def _rescale(self):

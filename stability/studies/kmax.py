@@ -11,7 +11,7 @@ from ..checks import check_flag, check_options, check_range
 from ..errors import ModeLost, NotResolved, naming
 from ..flows.base import check_flow
 from ..modes.accuracy import DEGREES, TOLERANCE, check_accuracy
-from ..modes.crests import Maximum, crest, default_mode, look, may_grow, search_of, surface_look
+from ..modes.crests import Maximum, crest, crest_mode, look, may_grow, search_of, surface_look
 from ..modes.listing import listed
 from ..modes.short_waves import Strip, ill_posed_strips
 from ..modes.solver import Assembly, Solver
@@ -32,13 +32,13 @@ from ..output.panels import (
 from ..output.record import Record
 from ..output.symbols import axis_label, symbol_of, value_text
 from ..output.text import Row, measured
-from ..status import Kind, Status, is_outgrown, is_resolved, outgrown, unresolved
+from ..status import Kind, Status, as_outgrown, is_outgrown, is_resolved, unresolved
 from .outgrown import faster
 
 if TYPE_CHECKING:
     from ..flows import Flow
 
-MODES = ("surface", "leading")
+CREST_MODES = ("surface", "leading")
 _OTHERS = "other local maxima"  # in figures
 
 
@@ -245,11 +245,11 @@ def k_max_sweep(flows: "Iterable[Flow]", search: tuple[float, float] | None = No
     """
     accuracy = check_accuracy(tolerance, max_degree)
     search = None if search is None else check_range(search, "search")
-    mode = None if mode is None else check_options("mode", mode, MODES)
+    mode = None if mode is None else check_options("mode", mode, CREST_MODES)
     assembly = None
     for flow in flows:
         assembly = assembly.serving(flow) if assembly else Assembly(flow)
-        yield _optimum(Solver(flow, accuracy, assembly), search, mode or default_mode(flow))
+        yield _optimum(Solver(flow, accuracy, assembly), search, mode or crest_mode(flow))
 
 
 @one_thread
@@ -272,7 +272,7 @@ def _optimum(solver, search, mode):
     status = doubt or _status(solver, looks, found, maxima, mode, low, high)
     strips = ()
     if mode == "surface" and maxima and faster(solver, maxima[0].mode):
-        status, strips = outgrown(status), ill_posed_strips(solver.flow)
+        status, strips = as_outgrown(status), ill_posed_strips(solver.flow)
     return Optimum(solver.flow, tuple(maxima), status, settings, strips)
 
 

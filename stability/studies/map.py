@@ -219,7 +219,7 @@ def carry_out(request, *, executor=None, workers=1, journal=None, report=None):
                 done[piece.index] = rows
                 count += piece.points
                 report(count, request.size)
-    table = tuple((*row[:-1], status.read(row[-1])) for piece in pieces for row in done[piece.index])
+    table = tuple((*row[:-1], status.status_of(row[-1])) for piece in pieces for row in done[piece.index])
     return Map(request, table, kept.damaged if kept else 0)
 
 

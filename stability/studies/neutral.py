@@ -83,7 +83,7 @@ def neutral_curve(flow: "Flow", vary: str, k: "ArrayLike", *, span: tuple[float,
     >>> f"{curve.points[0].value:.4f}"  # the nose of the curve: Orszag (1971) has 5772.22
     '5772.2218'
     """
-    return joined(list(neutral_parts(flow, vary, k, span=span, tolerance=tolerance, max_degree=max_degree)))
+    return joined_curve(list(neutral_parts(flow, vary, k, span=span, tolerance=tolerance, max_degree=max_degree)))
 
 
 def neutral_parts(flow: "Flow", vary: str, k: "ArrayLike", *, span: tuple[float, float] | None = None,
@@ -100,7 +100,7 @@ def neutral_parts(flow: "Flow", vary: str, k: "ArrayLike", *, span: tuple[float,
         yield NeutralCurve(flow, vary, points, np.concatenate((np.empty((0, 2)), *lines)), settings)
 
 
-def joined(parts: list[NeutralCurve]) -> NeutralCurve:
+def joined_curve(parts: list[NeutralCurve]) -> NeutralCurve:
     """Return the parts as one curve."""
     return replace(parts[0], points=tuple(point for part in parts for point in part.points),
                    trace=np.concatenate([part.trace for part in parts]))

@@ -76,7 +76,7 @@ def _data_error(flow, result):
 
 
 def _nothing(piece, why):
-    return *[None] * (piece.width - 1), status.read(why)
+    return *[None] * (piece.width - 1), status.status_of(why)
 
 
 def _each(sweep, flows):

@@ -109,8 +109,8 @@ class Request:
         stretches = [inner[first: first + _PIECE[self.quantity]]
                      for first in range(0, len(inner), _PIECE[self.quantity])]
         names = (*(outer_name for outer_name, _ in outer), name)
-        return tuple(Piece(index, self.quantity, tuple(self._at(names, (*line, value)) for value in stretch), self.k,
-                           self.vary, self.accuracy, len(self.results))
+        return tuple(GridPiece(index, self.quantity, tuple(self._at(names, (*line, value)) for value in stretch),
+                               self.k, self.vary, self.accuracy, len(self.results))
                      for index, (line, stretch) in enumerate(product(lines, stretches)))
 
     def _at(self, names, values):
@@ -132,7 +132,7 @@ class Request:
 
 
 @dataclass(frozen=True)
-class Piece:
+class GridPiece:
     """Neighbouring points that are computed together: a flow, or why there is none (a string), at each."""
 
     index: int

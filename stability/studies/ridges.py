@@ -15,7 +15,7 @@ import numpy as np
 
 from ..errors import ModeLost, ParameterError
 from ..modes.branch import surface_mode
-from ..modes.crests import ROUGH, default_mode, look, middle_of, search_of, surface_look
+from ..modes.crests import ROUGH, crest_mode, look, middle_of, search_of, surface_look
 from ..numerics.walker import Pace, Walker, towards
 from .plane import Plane, Point
 
@@ -60,7 +60,7 @@ class Crest:
 
 
 @dataclass(frozen=True)
-class Column:
+class Section:
     """What is known at one value of the parameter: crests by symmetry class, and whether anything `grows`.
 
     Where nothing does, `trouble` says why something may have been overlooked, or is None.
@@ -91,7 +91,7 @@ class Landscape:
 
     def __init__(self, flow, vary, span, search, accuracy):
         self.flow, self.vary, self.span = flow, vary, span
-        self.search = search or search_of(flow, default_mode(flow))
+        self.search = search or search_of(flow, crest_mode(flow))
         halves = range(len(flow.halves()))
         self.planes = [Plane(flow, vary, accuracy, half) for half in halves]
         self.rough = [plane.rough(ROUGH) for plane in self.planes]
@@ -119,12 +119,12 @@ class Landscape:
     def column(self, value):
         """The `Column` at a value; None where the flow does not exist."""
         try:
-            mode = default_mode(self.planes[0].flow_at(value))
+            mode = crest_mode(self.planes[0].flow_at(value))
         except ParameterError:
             return None
         self.modes.add(mode)
         if self.flow.decays:
-            return Column(value, {}, False, None)
+            return Section(value, {}, False, None)
         crests, trouble, grows = {}, None, False
         for half, plane in enumerate(self.rough):
             solver, found = plane.solver(value), []
@@ -139,7 +139,7 @@ class Landscape:
                 grows = grows or any(self.grows(plane.point(end.k, value, end)) for side in seen.ends for end in side)
             crests[half] = _distinct(found)
             grows = grows or any(self.grows(crest.point) for crest in crests[half])
-        return Column(value, crests, grows, None if grows else trouble)
+        return Section(value, crests, grows, None if grows else trouble)
 
     def grows(self, point, at_least=0.0):
         """Whether growth at a point exceeds a number by more than its error, computed properly where that is close."""

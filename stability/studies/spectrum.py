@@ -26,7 +26,7 @@ from .dispersion import dispersion
 if TYPE_CHECKING:
     from ..flows import Flow
 
-MOST = 200  # modes that can be asked for
+MOST_MODES = 200  # modes that can be asked for
 
 
 @dataclass(frozen=True, repr=False)
@@ -149,7 +149,7 @@ def spectrum(flow: "Flow", k: float, modes: int = 10, *, tolerance: float = TOLE
     [ 0.00373967 -0.03516728 -0.03518658]
     """
     strict, rivals = check_flag("strict", strict), check_flag("rivals", rivals)
-    k, modes = check_wavenumber(k), check_integer(modes, "modes", 1, MOST)
+    k, modes = check_wavenumber(k), check_integer(modes, "modes", 1, MOST_MODES)
     (found,) = spectra(check_flow(flow), [k], modes, check_accuracy(tolerance, max_degree))
     if strict:
         for mode in found.modes:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..modes.short_waves import POINTS, WellPosedness, well_posedness
+from ..modes.short_waves import LOOKED_AT, WellPosedness, well_posedness
 from ..modes.solver import Solver
 from ..numerics.threads import one_thread
 from ..output.panels import LINE, WAVENUMBER, Axis, Band, Curve, Panel
@@ -20,7 +20,7 @@ from ..status import INTERRUPTED, RESOLVED, unresolved
 from .dispersion import dispersion
 from .outgrown import leading_rate
 
-DEGREES = (16, 24, 32, 48, 64)
+GROWTH_DEGREES = (16, 24, 32, 48, 64)
 
 _SETTLED = 1e-4  # relative difference of two degrees that counts as converged
 
@@ -41,7 +41,7 @@ class Growth:
 
 
 @one_thread
-def growth_with_degree(flow, k, degrees=DEGREES):
+def growth_with_degree(flow, k, degrees=GROWTH_DEGREES):
     """Return the `Growth` at each wavenumber: does the spectrum converge, does an internal mode outgrow the surface?"""
     solver = Solver(flow)
     wavenumbers = np.unique(np.asarray(k, dtype=float))
@@ -107,7 +107,7 @@ def _growth_panel(growth):
                  Axis("growth_rate", r"largest growth rate $\sigma_r$", "symlog"), tuple(curves), zero="y")
 
 
-def ill_posedness(flow: Any, points: int = POINTS, growth: tuple[Growth, ...] = (),
+def ill_posedness(flow: Any, points: int = LOOKED_AT, growth: tuple[Growth, ...] = (),
                   wavenumbers: np.ndarray | None = None) -> IllPosedness:
     """Return the `IllPosedness` of a flow: rows of C at `points` of each layer, or of `growth` at the `wavenumbers`."""
     layers = well_posedness(flow)

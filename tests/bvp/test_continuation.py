@@ -192,6 +192,6 @@ def test_each_check_of_a_step_keeps_the_mode_by_itself(monkeypatch, flow, checks
     """Near k = 1 two real modes of these flows pass close to each other: long unchecked steps cross over."""
     exact = dispersion(flow, 2.0).sigma[0]
     monkeypatch.setattr(continuation, "_PACE", Pace(0.5, 0.5, 4e-3))
-    monkeypatch.setattr(continuation._Walk, "checks", checks)
+    monkeypatch.setattr(continuation._ParameterWalk, "checks", checks)
     (point,) = continue_in_k(flow, [2.0]).points
     assert (abs(point.sigma - exact) < 1e-8 * abs(exact)) == keeps

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from stability import flows
-from stability.equations.forms import symbol
+from stability.equations.forms import variable
 from stability.equations.system import System
 from stability.errors import ConditionCount
 
@@ -19,7 +19,7 @@ def value(form, **numbers):
 
 def test_forms_obey_arithmetic():
     rng = np.random.default_rng(3)
-    a, b, c = symbol("a"), symbol("b"), symbol("c")
+    a, b, c = variable("a"), variable("b"), variable("c")
     for _ in range(20):
         x, y, z = rng.standard_normal(3)
         form = 2 * (a - b) * (b + 3) ** 2 / 4 - (1 - c) + np.float64(0.5) * a
@@ -29,7 +29,7 @@ def test_forms_obey_arithmetic():
 
 def test_arrays_multiply_forms_from_either_side():
     s = np.linspace(0, 1, 4)
-    left, right = s * symbol("a"), symbol("a") * s
+    left, right = s * variable("a"), variable("a") * s
     np.testing.assert_array_equal(left.terms[("a",)], s)
     np.testing.assert_array_equal(right.terms[("a",)], s)
 

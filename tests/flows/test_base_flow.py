@@ -14,7 +14,7 @@ from twins import table
 
 from stability import cli, flows, spectrum
 from stability.bvp.problem import Problem
-from stability.equations.forms import symbol
+from stability.equations.forms import variable
 from stability.equations.layer import Layer, Profile
 from stability.equations.pencil import Pencil
 from stability.equations.system import System
@@ -364,7 +364,7 @@ def test_heights_of_an_upper_layer_are_those_in_the_flow(monkeypatch):
 
 
 def test_a_height_that_depends_on_a_symbol_is_given_in_the_layer():
-    layer = Layer("fluid", lambda s: Profile(dz=symbol("H"), U=np.abs(s - 0.5), dU=0.0, eta=1.0, beta=1.0))
+    layer = Layer("fluid", lambda s: Profile(dz=variable("H"), U=np.abs(s - 0.5), dU=0.0, eta=1.0, beta=1.0))
     with pytest.raises(NotSmooth, match=r"layer fluid: U is not smooth near s = 0\.[45]"):
         layer.resolved(lambda base, s: [base.U])
 

@@ -1,6 +1,7 @@
 """Following a mode: the same mode from either side, collisions met and named, jumps refused."""
 
-from math import exp
+from dataclasses import replace
+from math import exp, log
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 import references
 
 from stability import ModeLost, dispersion, flows, spectrum
+from stability.modes import memory
 from stability.modes.accuracy import Accuracy
 from stability.modes.branch import surface_branch, surface_mode
 from stability.modes.memory import forget
@@ -267,3 +269,54 @@ def test_what_lands_on_another_mode_is_refined_alone(monkeypatch):
     assert dispersion(flow, wavenumbers).sigma == pytest.approx(right, rel=1e-12)
     assert set(taken) & set(others)
     forget()
+
+
+CROWDED, CROSSING = (flows.Dune(shields=10.0, Re=0.3), 8.1), (flows.Vortex(slope_deg=21.215735, Fr2=0.77673), 2.0)
+OTHERS = {check: tuple(other for other in Walk.checks if other != check) for check in Walk.checks}
+
+
+@pytest.mark.parametrize(("question", "checks", "keeps"), [
+    (CROWDED, (), False), (CROWDED, ("smooth",), True), (CROWDED, OTHERS["smooth"], False),
+    (CROSSING, (), False), (CROSSING, ("overlaps",), True), (CROSSING, OTHERS["overlaps"], False)])
+def test_each_check_of_a_step_keeps_the_mode_by_itself(monkeypatch, question, checks, keeps):
+    """Where modes crowd slopes tell them apart, where two cross closely vectors do; all other checks do not."""
+    flow, k = question
+    right = dispersion(flow, k).sigma[0]
+    memory.forget()
+    monkeypatch.setattr(Walk, "checks", checks)
+    found = dispersion(flow, k, strict=False).sigma
+    memory.forget()
+    assert (abs(found[0] - right) < 1e-8 * abs(right)) == keeps
+
+
+@pytest.mark.parametrize(("error", "taken"), [(0.009, True), (0.011, False)])
+def test_a_mode_that_is_not_resolved_is_not_followed(monkeypatch, error, taken):
+    """With all other checks off."""
+    solver = Solver(flows.Dune())
+    walk = Walk(solver, solver.solve(1.0, dispersion(flows.Dune(), 1.0).modes[0].rate))
+    solve = solver.solve
+    monkeypatch.setattr(Walk, "checks", ("trusted",))
+
+    def solved(*args):
+        mode = solve(*args)
+        return replace(mode, error=error * abs(mode.sigma))
+
+    monkeypatch.setattr(solver, "solve", solved)
+    assert walk.stride(1.1, log(1.1)) == taken
+
+
+def test_a_real_mode_stays_real_where_no_collision_is_found(monkeypatch):
+    """With all other checks off: just above the first collision a pair is next to the real mode below it."""
+    flow = flows.Vortex(Fr2=5.0)
+    relation = dispersion(flow, [0.1, 1.0])
+    (collision, *_), (below, _) = relation.collisions, relation.modes
+    solver = Solver(flow)
+    real = Walk(solver, below).to(0.99 * collision.k)
+    pair = solver.solve(1.01 * collision.k, complex(real.rate, 0.2 * abs(real.rate)), (real.degree, real.x, real.y))
+    assert (real.rate.imag, abs(pair.rate.imag) > 1e-3 * abs(pair.rate)) == (0, True)
+    walk = Walk(solver, real)
+    monkeypatch.setattr(walk, "correct", lambda to, guess: pair)
+    for checks, taken in (("same_kind",), False), ((), True):
+        monkeypatch.setattr(Walk, "checks", checks)
+        assert walk.stride(pair.k, log(pair.k / real.k)) == taken
+    assert Walk(Solver(flows.Dune()), real).same_kind(pair, None)  # of complex matrices no mode is real

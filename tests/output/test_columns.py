@@ -12,7 +12,7 @@ from stability import flows
 from stability.cli import main
 from stability.cli.verbs import VERBS
 from stability.output import netcdf
-from stability.output.columns import BY_VERB, COLUMNS, DEGREES, PARAMETERS, column, known
+from stability.output.columns import ANY_DEGREE, BY_VERB, COLUMNS, PARAMETERS, column, known
 from stability.studies.base import base_flow
 from stability.studies.compare import Comparison, Measurement, Reference
 
@@ -31,7 +31,7 @@ WITHOUT_ROWS = {"flows", "explore"}
 def missing(names, verb, flow):
     """The columns of a verb that its list has not, or that nothing explains."""
     own = {item.name for item in fields(flows.find(flow))}
-    names = [DEGREES if name.startswith("degree_") else name for name in names if name not in own]
+    names = [ANY_DEGREE if name.startswith("degree_") else name for name in names if name not in own]
     return [name for name in names if name not in BY_VERB[verb] or not column(name, verb).meaning]
 
 

@@ -8,12 +8,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from stability import NotResolved, ParameterError, flows, spectrum
+from stability import NotResolved, ParameterError, dispersion, flows, spectrum
 from stability.cli import main
+from stability.modes.accuracy import Accuracy
 from stability.modes.energy import condition_numbers, energy
 from stability.modes.solver import Solver
 from stability.studies.critical import critical, critical_sweep
 from stability.studies.neutral import neutral_curve
+from stability.studies.plane import Plane
 from stability.studies.ridges import may_turn
 from stability.studies.sensitivity import parameter_slope
 
@@ -211,3 +213,14 @@ def test_growth_of_one_sign_at_both_ends_that_may_change_it_in_between(growth, s
     """Parabolas with and without zeros between their ends, and a straight line."""
     ends = (SimpleNamespace(value=exp(t), growth=growth(t), trend=slope(t)) for t in (-0.2, 0.3))
     assert bool(may_turn(*ends)) is turns
+
+
+@pytest.mark.parametrize(("checks", "keeps"), [(("overlaps",), True), ((), False)])
+def test_a_move_over_the_plane_keeps_the_mode_by_its_vectors(monkeypatch, checks, keeps):
+    """Near k = 1 two real modes of this flow pass within 7 % of each other: one long step lands on the other one."""
+    flow = flows.Vortex(slope_deg=21.215735, Fr2=0.77673)
+    start, end = dispersion(flow, [0.8, 2.0]).modes
+    walked = Plane(flow, "Fr2", Accuracy())
+    monkeypatch.setattr("stability.studies.plane._Move.checks", checks)
+    found = walked.move(walked.point(start.k, flow.Fr2, start), 2.0, flow.Fr2)
+    assert (abs(found.mode.sigma - end.sigma) < 1e-8 * abs(end.sigma)) == keeps

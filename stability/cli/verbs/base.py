@@ -14,8 +14,8 @@ def _points_option(verb):
 
 def _run(arguments):
     from ...checks import check_integer
-    from ...studies.base import MOST, POINTS, base_flow
+    from ...studies.base import HEIGHTS, MOST_HEIGHTS, base_flow
 
     flow = flow_of(arguments)
-    points = POINTS if arguments.points is None else check_integer(arguments.points, "--points", 2, MOST)
+    points = HEIGHTS if arguments.points is None else check_integer(arguments.points, "--points", 2, MOST_HEIGHTS)
     return report(arguments, lambda: base_flow(flow, points))

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 from ...errors import ParameterError
 from ...status import INTERRUPTED
-from ...studies.dispersion import MODES, DispersionRelation, default_mode, dispersion_parts, joined, judged
+from ...studies.dispersion import MODES, DispersionRelation, default_mode, dispersion_parts, joined_relation, judged
 from ..common import accuracy_options, add_verb, collect, k_option, options_of
 from ..families import answer, each_option
-from ..methods import method_of, method_options, settings_of
+from ..methods import bvp_settings, method_of, method_options
 from ..specs import parse_spec
 
 
@@ -39,8 +39,8 @@ def _question(arguments, flow, wavenumbers, options):
         parts = _continued(flow, wavenumbers, **bvp) if bvp else dispersion_parts(flow, wavenumbers, mode, **options)
         missing = DispersionRelation(flow, mode, (), dict.fromkeys(wavenumbers.tolist(), INTERRUPTED), ())
         found = collect(arguments, parts, len(wavenumbers), lambda done: [missing], lambda part: len(part.modes))
-        return judged(replace(joined(found, wavenumbers.tolist()), method=arguments.method,
-                              settings=settings_of(bvp, options)))
+        return judged(replace(joined_relation(found, wavenumbers.tolist()), method=arguments.method,
+                              settings=bvp_settings(bvp, options)))
 
     return compute
 

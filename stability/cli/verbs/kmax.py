@@ -2,10 +2,10 @@
 
 from ...errors import ParameterError, StabilityError
 from ...status import INTERRUPTED, unresolved
-from ...studies.kmax import MODES, Optima, Optimum, k_max_sweep
+from ...studies.kmax import CREST_MODES, Optima, Optimum, k_max_sweep
 from ..common import SPEC, accuracy_options, add_verb, collect, options_of, sweep_of
 from ..families import answer, each_option
-from ..methods import method_of, method_options, settings_of
+from ..methods import bvp_settings, method_of, method_options
 from .critical import search_option, searched
 
 
@@ -19,13 +19,13 @@ def _over_option(verb):
 
 
 def _mode_option(verb):
-    verb.add_argument("--mode", metavar="MODE", help=f"one of {', '.join(MODES)}: the slow surface mode alone "
+    verb.add_argument("--mode", metavar="MODE", help=f"one of {', '.join(CREST_MODES)}: the slow surface mode alone "
                       "(default of flows that are ill posed), or the fastest of all modes (default elsewhere)")
 
 
 def _run(arguments):
-    if arguments.mode and arguments.mode not in MODES:
-        raise ParameterError(f"--mode: must be one of {', '.join(MODES)} (got {arguments.mode!r})")
+    if arguments.mode and arguments.mode not in CREST_MODES:
+        raise ParameterError(f"--mode: must be one of {', '.join(CREST_MODES)} (got {arguments.mode!r})")
     options = options_of(arguments)
     return answer(arguments, lambda flow: _question(arguments, flow, options))
 
@@ -54,7 +54,7 @@ def _bounded(flow, bvp):
     """The optimum of a flow by bounded minimisation over solve_bvp's growth rates; the first maximum only."""
     from ...bvp.continuation import bounded_maximum
 
-    settings = settings_of(bvp)
+    settings = bvp_settings(bvp)
     try:
         found = bounded_maximum(flow, **bvp)
     except StabilityError as reason:

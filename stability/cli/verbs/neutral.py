@@ -51,7 +51,7 @@ def _curve(arguments, flow, options):
     import numpy as np
 
     from ...studies.critical import NeutralPoint
-    from ...studies.neutral import NeutralCurve, joined, neutral_parts
+    from ...studies.neutral import NeutralCurve, joined_curve, neutral_parts
 
     vary, wavenumbers = _vary(arguments, flow), parse_spec(arguments.k, "--k")
 
@@ -62,7 +62,7 @@ def _curve(arguments, flow, options):
             return [NeutralCurve(flow, vary, tuple(points), np.empty((0, 2)))]
 
         parts = neutral_parts(flow, vary, wavenumbers, **searched(arguments), **options)
-        return joined(collect(arguments, parts, len(wavenumbers), rest))
+        return joined_curve(collect(arguments, parts, len(wavenumbers), rest))
 
     return compute
 

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from ...checks import check_integer
-from ...studies.spectrum import MOST, Spectra, ill_posed_remarks, spectra
+from ...studies.spectrum import MOST_MODES, Spectra, ill_posed_remarks, spectra
 from ..common import accuracy_of, accuracy_options, add_verb, collect, flow_of, k_option, report
 from ..specs import parse_spec
 
@@ -20,7 +20,7 @@ def _modes_option(verb):
 
 def _run(arguments):
     flow, accuracy = flow_of(arguments), accuracy_of(arguments)
-    count = check_integer(arguments.modes, "--modes", 1, MOST)
+    count = check_integer(arguments.modes, "--modes", 1, MOST_MODES)
     wavenumbers = parse_spec(arguments.k, "--k")
 
     def compute():
