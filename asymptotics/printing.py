@@ -11,7 +11,7 @@ import sympy as sp
 from . import __version__
 from .series import Expansion
 
-_COLUMNS = "k", "growth_rate", "phase_speed", "error", "degree", "status"  # as `stability dispersion` has them
+_COLUMNS = "k", "growth_rate", "phase_speed", "error", "degree", "status"  # of `stability dispersion`
 _FUNCTIONS = {
     "gamma": "the gamma function", "log": "the natural logarithm",
     "WallResponse": "response of the fluid's shear stress to a wavy wall of unit amplitude, Psi''(0)/s0 of "

@@ -50,7 +50,7 @@ def test_numbers_are_near_those_of_dispersion(tmp_path, capsys, name):
     series = load(path)
     relation = dispersion(FLOWS[name](), series["k"])
     assert (status, err) == (0, "")
-    assert list(series.rows()[0]) == list(relation.rows()[0])
+    assert list(series.rows()[0]) == [name for name in relation.rows()[0] if not name.startswith("group")]
     sigma = series["growth_rate"] - 1j * series["k"] * series["phase_speed"]
     off = np.abs(sigma / relation.sigma - 1)
     assert off.max() < 1e-2
