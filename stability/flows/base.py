@@ -91,6 +91,10 @@ class Flow:
     functions: ClassVar[tuple[str, ...]] = ()
     if TYPE_CHECKING:
         bottom: ClassVar[float]
+
+        def layers(self, names: Any) -> tuple[Any, ...]: ...
+
+        def conditions(self, edges: Any, names: Any) -> tuple[Any, ...]: ...
     else:  # not annotated: else it would come first among the parameters of a flow that has one of this name
         bottom = 0.0  # z of the lowest edge
     wavenumber: ClassVar[float] = 1.0  # at which the mode leads that is followed where there is no surface mode

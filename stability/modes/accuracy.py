@@ -35,6 +35,9 @@ class Accuracy:
         return replace(self, tolerance=max(self.tolerance, tolerance))
 
 
+USUAL = Accuracy()
+
+
 def check_accuracy(tolerance: float, max_degree: int,
                    names: tuple[str, str] = ("tolerance", "max_degree")) -> Accuracy:
     """Return both as one value, or raise a ParameterError that uses these names."""

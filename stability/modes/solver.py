@@ -10,7 +10,7 @@ from ..equations.table import Table
 from ..flows.base import check_flow
 from ..numerics.refine import VECTOR, refine, refine_many
 from ..status import RESOLVED, unresolved
-from .accuracy import TOLERANCE, Accuracy
+from .accuracy import TOLERANCE, USUAL
 from .cutoff import neglected
 from .mode import Mode
 from .response import data_error, spread_of
@@ -89,7 +89,7 @@ class Solver:
     truncation alone.
     """
 
-    def __init__(self, flow, accuracy=Accuracy(), assembly=None, bars=True):  # noqa: B008 - a value that never changes
+    def __init__(self, flow, accuracy=USUAL, assembly=None, bars=True):
         self.flow = check_flow(flow)
         self.bars = bars
         self.accuracy, self.tolerance = accuracy, (tolerance := accuracy.tolerance)
