@@ -5,7 +5,9 @@ followed to the next column, or back where none arrived; growth and its derivati
 zero. In an ill-posed flow it is the surface mode that is asked about, at each value the one followed from long waves.
 """
 
+from collections.abc import Iterator
 from itertools import pairwise
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,12 +20,16 @@ from ..numerics.walker import Pace, Walker, towards
 from .ridges import Landscape, may_turn
 from .thresholds import zero_at
 
+if TYPE_CHECKING:
+    from .plane import Plane, Point
+    from .thresholds import Zero
+
 _PACE = Pace(0.25, 0.25, 1e-4)  # in the logarithm of the parameter
 _SAME = 1e-3  # relative distance of sigma within which two modes are one
 _ITERATIONS = 60
 
 
-def zeros_at(land: Landscape, k: float):
+def zeros_at(land: Landscape, k: float) -> "tuple[list[Zero], dict[Any, Any], set[Any]]":
     """Return the `Zero`s at wavenumber k by increasing value, the traces of why none is known, and whether any grows.
 
     The traces are {value: reason} of the columns that could not be computed.
@@ -45,7 +51,7 @@ def zeros_at(land: Landscape, k: float):
     return sorted(zeros, key=lambda zero: zero.value), trouble, grows
 
 
-def _modes(plane, k, value):
+def _modes(plane: "Plane", k: float, value: float) -> list[Any]:
     """Points at k of the modes that matter at a value."""
     solver = plane.solver(value)
     if crest_mode(plane.flow_at(value)) == "surface":
@@ -59,7 +65,7 @@ def _modes(plane, k, value):
     return [plane.point(k, value, mode) for mode in modes]
 
 
-def _changes(plane, left, right):
+def _changes(plane: Any, left: Any, right: Any) -> Iterator[Any]:
     """Pairs of neighbouring points of opposite growth between two columns (value, points)."""
     (low, here), (high, there) = left, right
     arrived = []
@@ -73,11 +79,11 @@ def _changes(plane, left, right):
             yield from _turns(plane, [start, *follow(plane, start, low)])
 
 
-def _one(a, b):
+def _one(a: "Point", b: "Point") -> bool:
     return abs(a.mode.sigma - b.mode.sigma) < _SAME * abs(a.mode.sigma)
 
 
-def follow(plane, start, value):
+def follow(plane: "Plane", start: "Point", value: float) -> Iterator[Any]:
     """Yield points of the mode from one value to another; ends early where it is lost."""
     walk = _AtOneWavenumber(plane, start)
     while walk.now.value != value and not walk.stuck:
@@ -90,18 +96,18 @@ class _AtOneWavenumber(Walker):
 
     failures = (ModeLost, ParameterError)
 
-    def __init__(self, plane, start):
+    def __init__(self, plane: "Plane", start: "Point") -> None:
         super().__init__(_PACE)
         self.plane, self.now = plane, start
 
-    def correct(self, to, guess):
+    def correct(self, to: float, guess: Any) -> "Point":
         return self.plane.move(self.now, self.now.k, to)
 
-    def accept(self, to, new):
+    def accept(self, to: float, new: "Point") -> None:
         self.now = new
 
 
-def _turns(plane, way):
+def _turns(plane: Any, way: Any) -> Iterator[Any]:
     for a, b in pairwise(way):
         if a.growth * b.growth <= 0:
             yield a, b
@@ -112,7 +118,7 @@ def _turns(plane, way):
                 yield middle, b
 
 
-def _refined(plane, a, b):
+def _refined(plane: "Plane", a: "Point", b: "Point") -> "Zero":
     """The `Zero` between two points of opposite growth: secants kept inside, at last with full accuracy."""
     a, b = plane.adopt(a), plane.adopt(b)
     for _ in range(_ITERATIONS):
