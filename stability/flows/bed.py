@@ -202,11 +202,12 @@ def joints(parts: list) -> list:
             for before, after in zip(parts, parts[1:], strict=False) for name in FIELDS]
 
 
-def creep_parameter(law: type[Law], floor: str = "floor of the bed", surface: str = "interface") -> dict[str, Any]:
+def creep_parameter(law: type[Law], floor: str = "floor of the bed", surface: str = "interface",
+                    what: str = "shear rate") -> dict[str, Any]:
     """The parameter that says where a rigid floor holds grains under a law without yield stress, {} for others."""
     return {} if law.yields else {"creep": parameter(
         1e-6, 1e-9, 0.5, look=(1e-8, 1e-2), reason="the floor must hold the grains, and rounding leaves it no more",
-        meaning=f"shear rate at the rigid {floor} over that at the {surface}; the law has no yield stress")}
+        meaning=f"{what} at the rigid {floor} over that at the {surface}; the law has no yield stress")}
 
 
 def flux_slopes(law: Law, shields: float, creep: float) -> tuple[float, float]:

@@ -23,6 +23,7 @@ from typing import Any
 
 import numpy as np
 
+_ROUNDING = 1e-14  # of the terms of C
 _ANGLES = np.linspace(-1, 1, 401)  # s = sin 2a, odd number: includes 0
 
 
@@ -38,10 +39,13 @@ def condition(r: np.ndarray, alpha: np.ndarray) -> np.ndarray:
 
 
 def ill_posed(r: np.ndarray, alpha: np.ndarray) -> np.ndarray:
-    """True where short waves of some direction grow without bound: numbers or arrays."""
+    """True where short waves of some direction grow without bound: numbers or arrays.
+
+    What is rounding is not: the regularised law is neutral where its branches meet, C(I1) = 0.
+    """
     excess = condition(r, alpha)
     root = 2 * r / np.maximum(alpha + np.sqrt(np.maximum(excess, 0)), 1e-300)
-    return ((excess > 0) & (root < 1)) | (alpha > 1)
+    return ((excess > _ROUNDING * (np.abs(r) + alpha**2)) & (root < 1)) | (alpha > 1)
 
 
 def law_condition(law: Any, I: Any) -> Any:  # noqa: E741

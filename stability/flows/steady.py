@@ -116,7 +116,8 @@ class Plate(Saturated):
 class Pile(Steady):
     """Flow on a deep pile between side walls, averaged across: mu(I) = tan(slope) - mu_wall h, h the depth: (2.28).
 
-    Without yield stress grains creep down to where the walls bear all weight, tan(slope) = mu_wall h.
+    Without yield stress grains creep, and a rigid floor holds them where the inertial number has fallen to `creep` of
+    that at the surface.
 
     Scales: see `scales`. A base flow alone: waves raise ParameterError, as do parameters outside their range.
 
@@ -144,10 +145,20 @@ class Pile(Steady):
     def mu(self) -> float:
         return float(tan_deg(self.slope_deg))
 
+    @classmethod
+    def extras(cls, law: Any) -> Any:
+        return beds.creep_parameter(law, "floor of the pile", "surface", "inertial number")
+
+    @property
+    def slowest(self) -> float:
+        """Friction where the grains are at rest, or on the floor."""
+        creep = getattr(self, "creep", 0.0)
+        return self.law.start if self.law.yields else float(self.law.mu(creep * self.law.inverse(self.mu)))
+
     @property
     def depth(self) -> float:
         """Of the flowing layer."""
-        return (self.mu - self.law.start) / self.mu_wall
+        return (self.mu - self.slowest) / self.mu_wall
 
     @property
     def bottom(self) -> float:  # type: ignore[override]
@@ -170,7 +181,7 @@ class Pile(Steady):
         def state(s: np.ndarray) -> Equilibrium:
             root = end + (start - end) * (1 - s)
             above = (start - end) * s * (start + root) + (self.depth - low)  # height above the bottom
-            inertial = law.beyond(self.mu_wall * above)
+            inertial = law.beyond(self.mu_wall * above + (self.slowest - law.start))
             stress = (self.mu - self.mu_wall * root**2) * root**2
             return Equilibrium(2 * (start - end) * root, root**2, stress, inertial)
 

@@ -274,14 +274,15 @@ def _intervals(segments: "list[list[Mode]]", wavenumbers: list[float]) -> list[t
     """For each wavenumber the segment that contains it, or the one that ends nearest to it, and the node before it."""
     logs, t = [np.log([node.k for node in nodes]) for nodes in segments], np.log(wavenumbers)
     outside = np.array([np.maximum(np.maximum(ends.min() - t, t - ends.max()), 0) for ends in logs])
+    before = [np.clip(np.searchsorted(ends, t, side="right") - 1, 0, max(len(ends) - 2, 0)).tolist() for ends in logs]
+    nearest, gaps = outside.argmin(axis=0).tolist(), outside.min(axis=0).tolist()
     places = []
-    for at, which, far in zip(t, outside.argmin(axis=0).tolist(), outside.min(axis=0), strict=True):
+    for number, (which, far) in enumerate(zip(nearest, gaps, strict=True)):
         nodes, ends = segments[which], logs[which]
         if far:
-            places.append(([nodes[0 if abs(ends[0] - at) < abs(ends[-1] - at) else -1]], 0))
-            continue
-        index = int(np.searchsorted(ends, at, side="right")) - 1
-        places.append((nodes, min(max(index, 0), max(len(nodes) - 2, 0))))
+            places.append(([nodes[0 if abs(ends[0] - t[number]) < abs(ends[-1] - t[number]) else -1]], 0))
+        else:
+            places.append((nodes, before[which][number]))
     return places
 
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 KEPT = 8  # branches, some megabytes each
 _AHEAD = 20  # wavenumbers whose functions of k are evaluated with those of the modes that are known
-_NEAR = 0.5  # largest distance of flows, in the logarithms of their parameters, whose branches resemble one another
+_NEAR = 0.8  # largest distance of flows, in the logarithms of their parameters, whose branches resemble one another
 
 _branches: OrderedDict = OrderedDict()
 _kept: ContextVar = ContextVar("branches", default=_branches)

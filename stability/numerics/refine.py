@@ -13,7 +13,7 @@ At many wavenumbers each has its own factorisation and all else is done together
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -34,7 +34,7 @@ VECTOR = 1e-9  # error of a vector, and so of the slope, that is accepted
 _OFFSET = 1e-3  # of a factorisation for corrections from its rate: it must not be singular
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Eigen:
     """Eigenvalues of a pencil at several points, arrays (points,) and vectors (points, size), or at a single one.
 
@@ -57,7 +57,9 @@ class Eigen:
 
     def split(self) -> "list[Eigen]":
         """Return the eigenvalues of the points, each on its own."""
-        return [Eigen(*values) for values in zip(*(getattr(self, field.name) for field in fields(self)), strict=True)]
+        bars = (getattr(self, name).tolist() for name in ("truncation", "rounding", "spread", "scatter", "left"))
+        return [Eigen(*values) for values in zip(self.rate, self.slope, *bars, self.x, self.y, self.settled.tolist(),
+                                                 strict=True)]
 
 
 def refine(pencil: Any, weights: Any, rate: complex, x: np.ndarray | None = None, y: np.ndarray | None = None,

@@ -7,7 +7,7 @@ import pytest
 
 from stability import NotResolved, dispersion, flows, k_max, spectrum
 from stability.cli import main
-from stability.flows import Linear
+from stability.flows import Linear, PowerLaw, Regularised, Saturating
 from stability.flows.rheology import well_posed_band
 from stability.modes.short_waves import well_posedness
 from stability.studies.dispersion import DispersionRelation
@@ -49,6 +49,43 @@ def test_every_dune_is_ill_posed_next_to_its_yield_surface(mu1):
     z = 1 - flow.shields / (1 + low)
     assert strip.low == 0
     assert strip.high == pytest.approx(z - (1 - flow.shields), rel=1e-9)
+
+
+SCENES = {  # with the height above its lower edge at which friction is mu, and where that is largest
+    "dune": (lambda law: flows.Dune(shields=1.4, law=law),
+             lambda flow, mu: flow.shields * (1 - flow.law.rest / mu), lambda flow: flow.law.rest * flow.shields),
+    "plate": (lambda law: flows.Plate(shields=1.3, law=law),
+              lambda flow, mu: flow.shields * (1 - flow.law.rest / mu), lambda flow: flow.law.rest * flow.shields),
+    "chute": (lambda law: flows.Chute(plug=0.72, law=law),
+              lambda flow, mu: 1 - flow.plug * mu / flow.law.rest, lambda flow: flow.law.rest / flow.plug),
+    "pile": (lambda law: flows.Pile(slope_deg=29.0, law=law),
+             lambda flow, mu: flow.depth - (flow.mu - mu) / flow.mu_wall, lambda flow: flow.mu),
+}
+
+
+@pytest.mark.parametrize("law", [Linear(0.4, 1.5), Saturating(0.4, 0.6, 0.3), PowerLaw(0.4, 1.5, 1.0)], ids=str)
+@pytest.mark.parametrize("scene", SCENES)
+def test_the_strip_is_where_the_condition_of_the_law_fails(scene, law):
+    """C depends on I alone: slow grains next to yield are ill posed up to where C(I) = 0, rapid ones of a saturating
+    law beyond the other zero."""
+    make, height, largest = SCENES[scene]
+    flow = make(law)
+    low, high = well_posed_band(law)
+    top = largest(flow)
+    frictions = [law.mu1, float(law.mu(low))]
+    if isinstance(law, Saturating) and law.mu(high) < top:
+        frictions += [float(law.mu(high)), top]
+    found = sorted(end for strip in well_posedness(flow).strips for end in (strip.low, strip.high))
+    np.testing.assert_allclose(found, sorted(height(flow, mu) for mu in frictions), atol=1e-9)
+    assert np.abs(np.array(found) - height(flow, float(law.mu(1.01 * low)))).min() > 1e-6
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_the_regularised_law_leaves_no_strip(scene):
+    make, *_ = SCENES[scene]
+    assert well_posedness(make(Saturating(0.4, 0.66, 0.3))).strips
+    for law in (Regularised(0.4, 0.66, 0.3), Regularised(0.4, 0.7, 0.2), Regularised()):  # C(I1) = 0 but for rounding
+        assert not well_posedness(make(law)).strips
 
 
 def test_roll_wave_growth_rises_with_degree_exactly_where_ill_posed():
