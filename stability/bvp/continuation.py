@@ -34,6 +34,11 @@ _BEND = 0.07  # error of the trapezoidal rule for a step, relative to its larges
 _BEND_FLOOR = 1e-3
 _STEPS = 400
 _LONG_WAVE = 0.03  # agreement of the first mode with the long-wave limit
+_STARTS = 12  # wavenumbers, each a quarter of the last, at which the long-wave limit is tried: 4^-12 of the first
+_LEAST_FACTOR, _NO_CHANGE = 0.7, 1e-6  # of the step length after one that was taken; a change too small to divide by
+_ROUNDING = 1e-16  # least relative error of sigma
+_FAINT = 1e-12  # a field so much smaller than all together has no relative change of its own
+_IDLE = 50  # below this part of the residual allowed an interval can be doubled: errors of order 4 rise by 16
 _BRACKET_STEP = 0.25  # of the look for maxima, in log k
 _K_ACCURACY = 1e-7  # of the bounded minimisation, relative to k
 
@@ -157,7 +162,7 @@ def bounded_maximum(flow: Any, search: Any = SEARCH, *, tolerance: Any = TOLERAN
     best = walk.point(float(found.x))
     a, middle, c = (growth[i] for i in (-3, -2, -1))
     curvature = abs(a - 2 * middle + c) / (log(bracket[1] / bracket[0]) / 2) ** 2
-    width = (2 * max(best.error, 1e-16 * abs(best.sigma)) / curvature) ** 0.5
+    width = (2 * max(best.error, _ROUNDING * abs(best.sigma)) / curvature) ** 0.5
     return BoundedMaximum(best.k, float(best.k * (width + _K_ACCURACY)), best)
 
 
@@ -169,7 +174,7 @@ def _effort(tolerance: float, residual: float | None) -> tuple[Any, ...]:
 @one_thread
 def _start(setting: Callable[..., Any], k: float, guess: Any, residual: float) -> "tuple[Solution, float]":
     """First solution and its k: at a k so small that the long-wave limit holds, or at the guess."""
-    for _ in range(12):
+    for _ in range(_STARTS):
         flow = setting(k)
         sigma = flow.long_wave(np.array([k]))[0] if guess is None else guess
         found = _cold(flow, k, sigma, residual)
@@ -288,7 +293,7 @@ class _ParameterWalk(Walker):
         return miss < _BEND * abs(length) * max(abs(self.slope), abs(ahead)) + _BEND_FLOOR * abs(new.rate)
 
     def factor(self, new: "Solution", guess: tuple[np.ndarray, ...]) -> float:
-        return min(2.0, max(0.7, (0.5 * _CHANGE / (self.change + 1e-6)) ** 0.5))
+        return min(2.0, max(_LEAST_FACTOR, (0.5 * _CHANGE / (self.change + _NO_CHANGE)) ** 0.5))
 
     def accept(self, to: Any, new: Any) -> None:
         self.before, self.now, self.value, self.slope = (self.value, self.now), new, to, self.slope_ahead
@@ -310,7 +315,7 @@ class _ParameterWalk(Walker):
     def _change(self, found: "Solution", mesh: np.ndarray, fields: np.ndarray, parameters: np.ndarray) -> float:
         """Largest relative difference between what was predicted and what was found."""
         now = found.fields(mesh)
-        moved = np.linalg.norm(now - fields, axis=1) / np.linalg.norm(now, axis=1).clip(1e-12 * np.linalg.norm(now))
+        moved = np.linalg.norm(now - fields, axis=1) / np.linalg.norm(now, axis=1).clip(_FAINT * np.linalg.norm(now))
         return max(abs(found.rate - parameters[0]) / abs(found.rate), np.max(moved))
 
     def _slope(self, solution: Any, value: Any) -> Any:
@@ -331,5 +336,5 @@ def _thinned(solution: "Solution", residual: float) -> np.ndarray:
     """The mesh without every second node, where the residual allows intervals twice as long."""
     mesh, size = solution.mesh, solution.residuals
     inner = np.arange(1, len(mesh) - 1, 2)
-    idle = inner[np.maximum(size[inner - 1], size[inner]) < residual / 50]
+    idle = inner[np.maximum(size[inner - 1], size[inner]) < residual / _IDLE]
     return mesh if len(mesh) - len(idle) < _START_NODES else np.delete(mesh, idle)

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 _NODES = 20_000
 _SHEAR_STRESS = 2  # index of t(0) among the edge values
+_NOTHING = 1e-10  # a coefficient of the singular term that is rounding
+_KEPT = 5  # meshes whose matrices are kept: those of one call of solve_bvp
 _INSIDE = np.array([0.2, 0.7])
 
 
@@ -89,7 +91,7 @@ class Problem:
         start = len(FIELDS) * index
         block = slice(start, start + len(FIELDS))
         self.singular[block, block] = at_edge.reshape(2, 4, 4)[0]
-        if layer.singular > 1 or np.max(np.abs(at_edge.reshape(2, 4, 4)[1])) > 1e-10:
+        if layer.singular > 1 or np.max(np.abs(at_edge.reshape(2, 4, 4)[1])) > _NOTHING:
             raise ParameterError(f"{self.flow.name}: solve_bvp takes one singular edge, at s = 0 of a layer")
         series[0] -= at_edge
         quotients = [C.chebdiv(column, [0.5, 0.5])[0] for column in series.T]
@@ -112,7 +114,7 @@ class Problem:
         """M0 and M1 without the singular term, (2, size, size, points); kept for the meshes of this solve."""
         key = s.tobytes()
         if key not in self._seen:
-            self._seen = dict(list(self._seen.items())[-5:]) | {key: self._evaluate(s)}
+            self._seen = dict(list(self._seen.items())[-_KEPT:]) | {key: self._evaluate(s)}
         return self._seen[key]
 
     def _conditions(self) -> tuple[np.ndarray, ...]:

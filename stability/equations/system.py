@@ -20,6 +20,7 @@ from .layer import FIELDS, residuals, resolved
 if TYPE_CHECKING:
     from .layer import Layer, Profile
 
+_PROPORTIONAL = 1e-12  # relative difference of ratios that is rounding: two conditions that say the same
 _EQUATIONS = ("shear rate", "continuity", "momentum along", "momentum across")
 
 
@@ -208,7 +209,7 @@ def _proportional(one: dict[tuple[Any, ...], Any], other: dict[tuple[Any, ...], 
     if one.keys() != other.keys():
         return False
     ratios = [complex(other[names] / value) for names, value in one.items()]
-    return all(abs(ratio - ratios[0]) <= 1e-12 * abs(ratios[0]) for ratio in ratios)
+    return all(abs(ratio - ratios[0]) <= _PROPORTIONAL * abs(ratios[0]) for ratio in ratios)
 
 
 def _check_count(flow: Any, layers: tuple[Any, ...], given: int) -> None:

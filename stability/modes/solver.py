@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from .accuracy import Accuracy
 
 _FAR_BELOW = 1e-15  # relative truncation error that is aimed at with the default tolerance
+_OVERSOLVED = 1e-7  # truncation over rounding below which one rung less of the degree suffices as well
 _VECTOR, _ROUGHEST = 0.01, 1e-6  # error of vectors without bars, in units of the tolerance; the largest
 _GLANCE = 0.3  # relative distance of a rate from a long-wave limit at which a mode may be meant
 _SCATTER = 40.0  # error of a slope from vectors right to rounding, in units of error times 1 or 1/k (measured)
@@ -231,7 +232,7 @@ class Solver:
     def next_degree(self, mode: Mode) -> int:
         """The degree to try first near this mode: one rung lower where it is over-resolved."""
         rung = self.degrees.index(mode.degree)
-        return self.degrees[rung - 1] if rung and mode.truncation < 1e-7 * mode.rounding else mode.degree
+        return self.degrees[rung - 1] if rung and mode.truncation < _OVERSOLVED * mode.rounding else mode.degree
 
     def _mode(self, k: float, degree: int, eigen: "Eigen") -> Mode:
         width = self.width(k)

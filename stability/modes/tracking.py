@@ -25,6 +25,11 @@ _CLOSE = 0.02  # step below which a collision is looked for, and a rough walk go
 _NARROW = 5e-3  # step that tells of another mode near by
 _PACE = Pace(0.3, _LARGEST_STEP, 1e-8)
 _PREDICTION = 0.05  # relative error of the predictor at which the step length is kept
+_ORDER, _EXACT = 4, 1e-12  # of the error of the predictor in the step; an error too small to divide by
+_FLAT = 1e-9  # bend of a step, relative to the rate, that is never refused: rates need not be exact on a rough walk
+_REAL = 1e-10  # largest imaginary part, relative, of a rate that is real but for rounding
+_FARTHEST, _BEYOND = 1e6, 1e-4  # lengths of the last step within which a collision is crossed; least way behind it
+_NEARNESS = 1e-3, 1e-5  # relative distances at which a collision is placed by Newton: its error is their square
 _BEND = 0.1  # largest departure of a step from the mean of its end slopes, relative
 _OVERLAP = 0.4  # largest deviation of the overlap from 1
 _STEPS, _STRETCH = 1000, 100  # attempts, and after how many of them it is asked whether those left can suffice
@@ -137,8 +142,8 @@ class Walk(Walker):
         return self.solver.solve(to, rate, vectors, self.solver.next_degree(self.now))
 
     def factor(self, new: "Mode", guess: tuple[Any, ...]) -> float:
-        miss = abs(new.rate - guess[0]) / (abs(new.rate) + abs(new.k * new.rate_slope)) + 1e-12
-        return min(2.0, max(0.5, (_PREDICTION / miss) ** 0.25))
+        miss = abs(new.rate - guess[0]) / (abs(new.rate) + abs(new.k * new.rate_slope)) + _EXACT
+        return min(2.0, max(0.5, (_PREDICTION / miss) ** (1 / _ORDER)))
 
     def accept(self, to: Any, new: Any) -> None:
         self.before, self.now = self.now, new
@@ -158,11 +163,11 @@ class Walk(Walker):
         """Whether the rates and slopes at both ends of the step belong to one smooth curve in log k."""
         h, rise = log(mode.k / self.now.k), mode.rate - self.now.rate
         a, b = (h * end.k * end.rate_slope for end in (self.now, mode))
-        return abs(rise - (a + b) / 2) <= _BEND * (abs(rise) + abs(a) + abs(b)) + 1e-9 * abs(mode.rate)
+        return abs(rise - (a + b) / 2) <= _BEND * (abs(rise) + abs(a) + abs(b)) + _FLAT * abs(mode.rate)
 
     def same_kind(self, mode: "Mode", guess: tuple[Any, ...]) -> bool:
         """Real stays real and complex stays complex, unless a collision has been found."""
-        real = abs(mode.rate.imag) < 1e-10 * abs(mode.rate)
+        real = abs(mode.rate.imag) < _REAL * abs(mode.rate)
         return not self.solver.pencil(mode.degree).real or real == (self.now.rate.imag == 0)
 
     def overlaps(self, mode: "Mode", guess: tuple[Any, ...]) -> bool:
@@ -207,9 +212,9 @@ class Walk(Walker):
             middle = now.rate.real + (ahead - now.k) * slope.real
             half = abs(now.rate.imag)
         reach = (k - now.k) / (ahead - now.k)
-        if not 1 < reach < 1e6:
+        if not 1 < reach < _FARTHEST:
             return False
-        distance = min(abs(k - ahead), max(abs(ahead - now.k), 1e-4 * ahead))
+        distance = min(abs(k - ahead), max(abs(ahead - now.k), _BEYOND * ahead))
         beyond = ahead + copysign(distance, k - ahead)
         guess = middle + half * (distance / abs(ahead - now.k)) ** 0.5
         try:
@@ -226,7 +231,7 @@ class Walk(Walker):
 
     def _pin(self, pair: Any, becomes: Any) -> Any:
         """Place the collision by Newton on Im(rate)^2 = 0, from the complex side, ever nearer to it."""
-        for nearness in (1e-3, 1e-5):
+        for nearness in _NEARNESS:
             k = pair.k - pair.rate.imag / (2 * pair.rate_slope.imag)
             near = k + copysign(nearness * k, pair.k - k)
             if abs(near - k) < abs(pair.k - k):

@@ -16,6 +16,8 @@ _ITERATIONS = 20
 _LARGEST = 0.4  # step of Newton in log k, and relative in the parameter
 _PACE = Pace(0.02, 0.25, 1e-5, 2.0)  # along the curve, in log k and log value
 _TURN = 0.15  # angle between neighbouring tangents at which the step is kept
+_STRAIGHT = 1e-9  # a turn too small to divide by
+_PLACED = 1e-3  # of the first step: a Newton step so short ends on the curve
 _POINTS = 400
 _MARGIN = 1.15  # factor in k beyond the range asked for within which the curve may turn back
 _DRAWN = 0.03  # distance from a curve, in log k and log value, within which a point lies on it
@@ -72,7 +74,7 @@ class _Contour(Walker):
         return self._turn(new) <= 2 * _TURN
 
     def factor(self, new: "Point", guess: tuple[float, ...]) -> float:
-        return min(2.0, _TURN / max(self._turn(new), 1e-9))
+        return min(2.0, _TURN / max(self._turn(new), _STRAIGHT))
 
     def accept(self, to: float, new: "Point") -> None:
         self.points.append(new)
@@ -105,7 +107,7 @@ def _project(plane: "Plane", point: "Point") -> "Point":
         step = -point.growth * gradient / (gradient @ gradient)
         if np.hypot(*step) > _LARGEST:
             raise ModeLost("the neutral curve is not near")
-        if np.hypot(*step) < 1e-3 * _PACE.first:
+        if np.hypot(*step) < _PLACED * _PACE.first:
             return point
         point = plane.move(point, point.k * exp(step[0]), point.value * exp(step[1]))
     raise ModeLost("the neutral curve is not near")

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 _PACE = Pace(0.25, 0.25, 1e-4)  # in the logarithm of the parameter
 _SAME = 1e-3  # relative distance of sigma within which two modes are one
 _ITERATIONS = 60
+_INNER = 0.01  # part of a bracket at either end that a secant does not step into
+_LAST_DIGIT = 1e-15  # relative step of Newton that is rounding
 
 
 def zeros_at(land: Landscape, k: float) -> "tuple[list[Zero], dict[Any, Any], set[Any]]":
@@ -122,13 +124,13 @@ def _refined(plane: "Plane", a: "Point", b: "Point") -> "Zero":
     """The `Zero` between two points of opposite growth: secants kept inside, at last with full accuracy."""
     a, b = plane.adopt(a), plane.adopt(b)
     for _ in range(_ITERATIONS):
-        share = float(np.clip(a.growth / (a.growth - b.growth), 0.01, 0.99)) if a.growth != b.growth else 0.5
+        share = float(np.clip(a.growth / (a.growth - b.growth), _INNER, 1 - _INNER)) if a.growth != b.growth else 0.5
         near = min(a, b, key=lambda point: abs(point.growth))
         newton = near.value - near.growth / near.by_value.real
         inside = min(a.value, b.value) < newton < max(a.value, b.value)
         new = plane.move(near, near.k, newton if inside else a.value * (b.value / a.value) ** share)
         a, b = (new, b) if new.growth * b.growth <= 0 else (a, new)
-        if abs(new.growth) < 0.5 * new.mode.error or abs(newton - near.value) < 1e-15 * abs(near.value):
+        if abs(new.growth) < 0.5 * new.mode.error or abs(newton - near.value) < _LAST_DIGIT * abs(near.value):
             break
     best = min(a, b, key=lambda point: abs(point.growth))
     return zero_at(best, (best.mode.error + abs(best.growth)) / abs(best.by_value.real), 0.0, plane)

@@ -40,6 +40,7 @@ if TYPE_CHECKING:
 
 CREST_MODES = ("surface", "leading")
 _OTHERS = "other local maxima"  # in figures
+_ONE = 1e-9, 1e-6  # relative distances of k, beyond the errors, and of sigma within which two maxima are one
 
 
 @dataclass(frozen=True, repr=False)
@@ -309,8 +310,8 @@ def _properly(solver: Solver, mode: Any) -> Any:
 def _distinct(maxima: list[Maximum]) -> list[Maximum]:
     kept = []
     for one in maxima:
-        if not any(abs(one.k - other.k) <= one.error + other.error + 1e-9 * one.k
-                   and abs(one.mode.sigma - other.mode.sigma) <= 1e-6 * abs(one.mode.sigma) for other in kept):
+        if not any(abs(one.k - other.k) <= one.error + other.error + _ONE[0] * one.k
+                   and abs(one.mode.sigma - other.mode.sigma) <= _ONE[1] * abs(one.mode.sigma) for other in kept):
             kept.append(one)
     return kept
 

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 _CHECK_DEGREE = 16, 96  # least and largest of the look for a faster mode; between them that of the surface mode
 _FASTER = 1e-6  # relative excess of growth that counts as faster
+_DOUBT = 10  # times its error bar that a mode may grow faster than it seems: rivals have no bars of their own
 _SETTLED = 1e-4  # relative difference of two degrees that counts as converged
 
 
@@ -71,7 +72,7 @@ def faster(solver: Solver, mode: "Mode") -> Any:
 
     A degree that does not resolve the mode itself would miss its rivals.
     """
-    threshold = mode.growth_rate + _FASTER * abs(mode.sigma) + 10 * mode.error
+    threshold = mode.growth_rate + _FASTER * abs(mode.sigma) + _DOUBT * mode.error
     rung = DEGREES.index(min(max(mode.degree, _CHECK_DEGREE[0]), _CHECK_DEGREE[1]))
     rates = {}
     for degree in (DEGREES[rung], DEGREES[rung + 2]):

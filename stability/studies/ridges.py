@@ -39,6 +39,9 @@ _STRIDE = 1e-3  # in log k, to find the curvature of a crest
 _SAME = 0.03, 0.01  # distance in log k, and of sigma relative, within which two crests are one
 _BISECTIONS = 60
 _CLOSE = 1e-6  # relative width in the parameter at which Newton's method takes over
+_NARROW = 1e-12  # relative width of the bracket of a long-wave threshold that is left to rounding
+_INNER = 0.02, 0.05  # parts of a bracket at either end that a secant does not step into: of a threshold, of a ridge
+_DOUBT = 5  # times the rough error of a growth rate within which its sign is asked of the full accuracy
 _LONG = 1e-9  # wavenumber that stands for 0
 _LONG_ERROR = 32.0  # error of d rate/dk there in units of the error of the rate (measured: up to 18)
 _LOWER = 0.5  # part of a rate that growth of lower order than k^2 leaves as k -> 0
@@ -149,7 +152,7 @@ class Landscape:
 
     def grows(self, point: Point, at_least: float = 0.0) -> bool:
         """Whether growth at a point exceeds a number by more than its error, computed properly where that is close."""
-        doubt = 5 * point.mode.error
+        doubt = _DOUBT * point.mode.error
         if abs(point.growth - at_least) > doubt:
             return point.growth > at_least
         mode = self.planes[point.plane.half].adopt(point).mode
@@ -202,12 +205,12 @@ class Landscape:
     def _narrowed(self, one: "LongWaves", other: "LongWaves") -> "tuple[LongWaves, LongWaves]":
         """A bracket of the threshold so narrow that its middle is right to rounding."""
         for _ in range(_BISECTIONS):
-            share = float(np.clip(one.a / (one.a - other.a), 0.02, 0.98))
+            share = float(np.clip(one.a / (one.a - other.a), _INNER[0], 1 - _INNER[0]))
             new = self.long_wave(one.value + share * (other.value - one.value))
             if new is None:
                 break
             one, other = (new, other) if new.a * other.a < 0 else (one, new)
-            if abs(new.a) <= new.spread or abs(one.value - other.value) < 1e-12 * abs(one.value):
+            if abs(new.a) <= new.spread or abs(one.value - other.value) < _NARROW * abs(one.value):
                 break
         return one, other
 
@@ -322,7 +325,8 @@ def may_turn(a: Any, b: Any) -> bool:
 def narrowed(plane: Plane, a: "Crest", b: "Crest") -> "Crest":
     """The crest of a ridge nearest to zero growth between two of opposite sign."""
     for _ in range(_BISECTIONS):
-        share = float(np.clip(a.growth / (a.growth - b.growth), 0.05, 0.95)) if a.growth != b.growth else 0.5
+        share = 0.5 if a.growth == b.growth else \
+            float(np.clip(a.growth / (a.growth - b.growth), _INNER[1], 1 - _INNER[1]))
         new = _ahead(plane, min(a, b, key=lambda one: abs(one.growth)), a.value * (b.value / a.value) ** share, 0.0)
         if new is None:
             new = _ahead(plane, max(a, b, key=lambda one: abs(one.growth)), (a.value * b.value) ** 0.5, 0.0)

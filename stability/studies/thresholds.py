@@ -32,6 +32,10 @@ _SCATTER = 4.0  # error of a slope in units of its change when the vectors are r
 _VALUE_TOLERANCE = 1e-9  # relative error of a value that is accepted as resolved whatever the tolerance of sigma
 _BOTH = "all modes, where the flow is ill posed the surface mode"
 _SAME = 1e-6  # relative distance of two values, and of their k, that are one
+_SAME_K = 1e-3  # that of their wavenumbers, which a flat crest leaves open
+_ITSELF = 0.05  # distance in log k within which a crest is the one that is neutral
+_POLISHED = 1e-9  # step in log k at which a nose is settled at full accuracy: its error in growth is the square
+_THRESHOLD = 1e-7  # relative error of a long-wave threshold that is accepted: its slopes have no better bars
 
 
 @dataclass(frozen=True)
@@ -122,7 +126,7 @@ def nose(plane: "Plane", crest: "Crest") -> "Zero":
         again = plane.adopt(point)
         scatter = _SCATTER * abs(again.mode.slope - point.mode.slope)
         point = again
-        if abs(point.growth) < point.mode.error and abs(step[0]) < 1e-9:
+        if abs(point.growth) < point.mode.error and abs(step[0]) < _POLISHED:
             break
     bend = jacobian[1, 0] * point.k**plane.power
     error = (point.mode.error + abs(point.growth)) / abs(point.by_value.real)
@@ -163,13 +167,13 @@ def _threshold(one: "LongWaves", other: "LongWaves") -> "Zero":
     slope = (other.a - one.a) / (other.value - one.value)
     best = min(one, other, key=lambda known: abs(known.a))
     error = (abs(best.a) + best.spread) / abs(slope)
-    status = RESOLVED if error <= 1e-7 * abs(best.value) else unresolved(f"error {error:.1e} exceeds tolerance")
+    status = RESOLVED if error <= _THRESHOLD * abs(best.value) else unresolved(f"error {error:.1e} exceeds tolerance")
     return Zero(0.0, best.value, best.mode, float(error), 0.0, status, slope)
 
 
 def _near(zero: "Zero", other: "Zero") -> bool:
     return abs(zero.value - other.value) <= _SAME * abs(zero.value) + zero.error + other.error \
-        and abs(zero.k - other.k) <= 1e-3 * max(zero.k, other.k)
+        and abs(zero.k - other.k) <= _SAME_K * max(zero.k, other.k)
 
 
 def _inside(land: Landscape, zero: "Zero", zeros: "list[Zero]") -> bool:
@@ -191,7 +195,7 @@ def _others_grow(land: Any, zero: Any) -> Any:
     column = land.column(zero.value)
     for crests in column.crests.values():
         for crest in crests:
-            itself = zero.k and abs(log(crest.point.k / zero.k)) < 0.05
+            itself = zero.k and abs(log(crest.point.k / zero.k)) < _ITSELF
             if not itself and land.grows(crest.point, abs(crest.point.by_value.real) * zero.error):
                 return True
     return False
