@@ -32,7 +32,7 @@ def table(expansion: Expansion, meanings: dict[str, str]) -> str:
     return "\n".join([*lines, "", *_explained(expansion, meanings)])
 
 
-def _explained(expansion, meanings):
+def _explained(expansion: Expansion, meanings: dict[str, str]) -> list[str]:
     """A line for the sum, and for each symbol and function in the coefficients."""
     gauge, coefficients = expansion.gauge, list(expansion.terms.values())
     of = "" if expansion.wavenumber == gauge else f", at the wavenumber k = {expansion.wavenumber}"
@@ -65,7 +65,7 @@ def latex(expansion: Expansion, symbols: dict[str, str]) -> str:
     return "\n".join([rf"% \sigma = \sum_p \sigma_p {gauge}^p", *(line + r" \\" for line in lines)])
 
 
-def _printed(c, symbols):
+def _printed(c: Any, symbols: dict[str, str]) -> Any:
     """A coefficient with the angle itself in trigonometric functions, not its degrees, and Fr^2 as a square."""
     changed = {}
     for symbol in c.free_symbols:
@@ -93,11 +93,11 @@ def as_json(expansion: Expansion) -> str:
     return json.dumps(record, indent=1, allow_nan=False)
 
 
-def _pair(value):
+def _pair(value: complex | None) -> list[float] | None:
     return None if value is None else [value.real, value.imag]
 
 
-def _plain(value):
+def _plain(value: Any) -> Any:
     """A JSON number; infinity, which JSON lacks, as the string that the command line takes."""
     if value is None:
         return None
@@ -126,7 +126,7 @@ def numbers(expansion: Expansion, k: np.ndarray, form: str | None) -> str:
     return _columns(rows)
 
 
-def _csv(header, rows):
+def _csv(header: dict[str, Any], rows: list[dict[str, Any]]) -> str:
     text = io.StringIO()
     text.writelines(f"# {key}: {value}\n" for key, value in header.items())
     writer = csv.DictWriter(text, _COLUMNS, lineterminator="\n")
