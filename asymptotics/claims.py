@@ -1,11 +1,15 @@
 """What is known beforehand of the difference between numerics and a series: the powers to expect."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .comparison import PART_NAMES
 from .series import vanishes
+
+if TYPE_CHECKING:
+    from .series import Expansion
 
 
 @dataclass(frozen=True)
@@ -25,7 +29,7 @@ class Claim:
     towards: int = 1
 
 
-def claim_of(series, expected) -> Claim:
+def claim_of(series: Any, expected: int | None) -> Claim:
     if hasattr(series, "next_power"):
         return _claim_of_expansion(series, expected)
     if expected is None:
@@ -36,7 +40,7 @@ def claim_of(series, expected) -> Claim:
                   dict.fromkeys(PART_NAMES, {}), None, -1 if power < 0 else 1)
 
 
-def _claim_of_expansion(law, expected) -> Claim:
+def _claim_of_expansion(law: "Expansion", expected: Any) -> Claim:
     values = law.values()
     following = law.next_powers if expected is None else dict.fromkeys(PART_NAMES, float(expected))
     spacing = float(law.spacing)
@@ -50,6 +54,6 @@ def _claim_of_expansion(law, expected) -> Claim:
                   spacing if towards > 0 else None, towards)
 
 
-def _has(law, part, power) -> bool:
+def _has(law: "Expansion", part: str, power: Any) -> bool:
     """Whether a power can occur in a part."""
     return not law.alternates or power % 2 == (part == "imag")

@@ -3,20 +3,25 @@
 Exit status: 0 done; 2 bad usage or input; 3 `check` found another order than expected; 130 interrupted.
 """
 
+import argparse
 import shutil
 import sys
 from textwrap import wrap
+from typing import TYPE_CHECKING, Any
 
 from . import __version__
 from .reading import read_csv, source
 from .streams import drop_output, open_streams, say
 from .usage import BadUsage, Help, Parser, add_parameters, nearest, positive
 
+if TYPE_CHECKING:
+    from .series import Expansion
+
 VERBS = ("flows", "expand", "evaluate", "check")
 _INDENT = " " * 8  # of what is left of a line wider than the terminal
 
 
-def main(argv=None) -> int:
+def main(argv: list[str] | None = None) -> int:
     """Run the command line; return the exit status."""
     argv = sys.argv[1:] if argv is None else argv
     open_streams()
@@ -34,7 +39,7 @@ def main(argv=None) -> int:
         return _fail("interrupted", 130)
 
 
-def _run(argv) -> int:
+def _run(argv: list[str]) -> int:
     try:
         arguments, unknown = _parser(argv).parse_known_args(argv)
         if unknown:
@@ -53,12 +58,12 @@ def _run(argv) -> int:
         raise
 
 
-def _fail(reason, status: int) -> int:
+def _fail(reason: Any, status: int) -> int:
     say(f"asymptotics: {reason}")
     return status
 
 
-def _parser(argv) -> Parser:
+def _parser(argv: list[str]) -> Parser:
     parser = Parser(prog="asymptotics", description="Long-wave and other limits of granular shear flows, exactly.",
                     epilog="example: asymptotics expand dune --regime shallow --shields 1.5 --depth 10")
     parser.add_argument("--version", action="version", version=f"asymptotics {__version__}")
@@ -76,7 +81,7 @@ def _parser(argv) -> Parser:
     return parser
 
 
-def _add_expand(verbs) -> Parser:
+def _add_expand(verbs: Any) -> Parser:
     verb = verbs.add_parser("expand", help="expansion of the growth rate", add_help=False,
                             epilog="example: asymptotics expand vortex --order 4 --slope-deg 30")
     verb.add_argument("flow", metavar="FLOW", help="one of those that are listed by: asymptotics flows")
@@ -86,7 +91,7 @@ def _add_expand(verbs) -> Parser:
     return verb
 
 
-def _add_evaluate(verbs) -> Parser:
+def _add_evaluate(verbs: Any) -> Parser:
     verb = verbs.add_parser("evaluate", help="the expansion as numbers, in the columns of `stability dispersion`",
                             add_help=False, epilog="example: asymptotics evaluate dune --k 0.01:0.1:9 --csv")
     verb.add_argument("flow", metavar="FLOW", help="one of those that are listed by: asymptotics flows")
@@ -97,7 +102,7 @@ def _add_evaluate(verbs) -> Parser:
     return verb
 
 
-def _add_check(verbs) -> Parser:
+def _add_check(verbs: Any) -> Parser:
     verb = verbs.add_parser("check", help="compare with numbers written by `stability dispersion ... --csv`",
                             add_help=False,
                             epilog="example: stability dispersion dune --k 1e-6:1e-4:9 --csv | asymptotics check dune")
@@ -111,7 +116,7 @@ def _add_check(verbs) -> Parser:
     return verb
 
 
-def _add_forms(verb, **forms: str) -> None:
+def _add_forms(verb: Parser, **forms: str) -> None:
     """Flags of the forms that output can have, {name: help}; one of them at most."""
     group = verb.add_mutually_exclusive_group()
     for name, meaning in forms.items():
@@ -121,7 +126,7 @@ def _add_forms(verb, **forms: str) -> None:
 # -- verbs -----------------------------------------------------------------------------------------------
 
 
-def _flows(arguments) -> int:
+def _flows(arguments: argparse.Namespace) -> int:
     from . import flows
 
     chosen = [arguments.flow] if arguments.flow else flows.names()
@@ -129,7 +134,7 @@ def _flows(arguments) -> int:
     return 0
 
 
-def _describe(name: str, flow) -> str:
+def _describe(name: str, flow: Any) -> str:
     lines = [f"{name}: {flow.SUMMARY}"]
     width = max(12, *(len(parameter.flag) for parameter in flow.PARAMETERS))
     lines += [f"  {parameter.flag:{width}} {parameter.range:22} {parameter.meaning}" for parameter in flow.PARAMETERS]
@@ -139,7 +144,7 @@ def _describe(name: str, flow) -> str:
     return "\n".join(lines)
 
 
-def _expand(arguments) -> int:
+def _expand(arguments: argparse.Namespace) -> int:
     from . import flows, printing
 
     flow = _load(arguments.flow)
@@ -154,14 +159,14 @@ def _expand(arguments) -> int:
     return 0
 
 
-def _need_numbers(expansion) -> None:
+def _need_numbers(expansion: "Expansion") -> None:
     missing = [name for name, value in expansion.parameters.items() if value is None]
     if missing:
         raise BadUsage(f"regime {expansion.regime} needs {', '.join('--' + name for name in missing)}: there is no "
                        "default")
 
 
-def _evaluate(arguments) -> int:
+def _evaluate(arguments: argparse.Namespace) -> int:
     from . import flows, printing
     from .specs import BadSpec, parse_spec
 
@@ -180,7 +185,7 @@ def _evaluate(arguments) -> int:
     return 0
 
 
-def _check(arguments) -> int:
+def _check(arguments: argparse.Namespace) -> int:
     from . import flows
     from .limits import OrderMismatch, assert_order
 
@@ -215,7 +220,7 @@ def _check(arguments) -> int:
     return _judge(comparison)
 
 
-def _sigma(columns, arguments):
+def _sigma(columns: Any, arguments: argparse.Namespace) -> Any:
     """The complex growth rate, and which part of it is known and asked for."""
     if "phase_speed" in columns:
         return columns["growth_rate"] - 1j * columns["k"] * columns["phase_speed"], arguments.part
@@ -224,7 +229,7 @@ def _sigma(columns, arguments):
     return columns["growth_rate"], "real"
 
 
-def _judge(comparison) -> int:
+def _judge(comparison: Any) -> int:
     """Print a comparison, what fails with the verdict first; return the exit status."""
     verdict, table = f"# {comparison.verdict}", comparison.table()
     print(*((table, verdict) if comparison.agrees else (verdict, table)), sep="\n")
@@ -234,7 +239,7 @@ def _judge(comparison) -> int:
 # -- input -----------------------------------------------------------------------------------------------
 
 
-def _load(name: str):
+def _load(name: str) -> Any:
     from . import flows
 
     if name not in flows.names():
@@ -242,7 +247,7 @@ def _load(name: str):
     return flows.load(name)
 
 
-def _nearest_flag(arguments, unknown: str) -> str:
+def _nearest_flag(arguments: argparse.Namespace, unknown: str) -> str:
     from . import flows
 
     name = getattr(arguments, "flow", None)
@@ -250,7 +255,7 @@ def _nearest_flag(arguments, unknown: str) -> str:
     return nearest(unknown.partition("=")[0], known)
 
 
-def _given(arguments) -> dict[str, str]:
+def _given(arguments: argparse.Namespace) -> dict[str, str]:
     return {key.partition(" ")[2]: value for key, value in vars(arguments).items()
             if key.startswith("parameter ") and value is not None}
 

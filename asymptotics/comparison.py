@@ -13,7 +13,7 @@ PART_NAMES = {"real": "real part", "imag": "imaginary part"}
 class OrderMismatch(AssertionError):
     """The difference falls at another order than expected; `comparison` holds the numbers."""
 
-    def __init__(self, comparison: "Comparison"):
+    def __init__(self, comparison: "Comparison") -> None:
         super().__init__(f"{comparison.verdict}\n{comparison.table()}")
         self.comparison = comparison
 

@@ -6,8 +6,10 @@ needed, the coefficient there differs by a_q. This is for series in rising power
 """
 
 from bisect import bisect
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 
@@ -83,7 +85,8 @@ class Explanation:
         return f"the coefficient of k^{_power(fit.power)} differs by {fit.value:.3g} +- {fit.error:.1g}{relative}"
 
 
-def explain(k, difference, error, below, expected: float, step: float, coefficients) -> Explanation:
+def explain(k: np.ndarray, difference: np.ndarray, error: np.ndarray, below: list[float], expected: float, step: float,
+            coefficients: dict[Any, Any]) -> Explanation:
     """Fit a real difference of shape (points,), k increasing.
 
     below          powers that may occur under the expected one
@@ -96,7 +99,7 @@ def explain(k, difference, error, below, expected: float, step: float, coefficie
     for points in _windows(len(k)):
         count = min(_TERMS, points - 1)
 
-        def fit(power, points=points, count=count):
+        def fit(power: float, points: int = points, count: int = count) -> "Fit":
             powers = [power, *known[bisect(known, power):], *beyond] if power < expected else beyond
             return _fit(k[:points], difference[:points], error[:points], powers[:count])
 
@@ -109,7 +112,7 @@ def explain(k, difference, error, below, expected: float, step: float, coefficie
     return Explanation(expected, None, None, coefficients)
 
 
-def is_astray(k, values, coefficients) -> bool:
+def is_astray(k: np.ndarray, values: np.ndarray, coefficients: dict[Any, Any]) -> bool:
     """Whether real values of shape (points,) rise more slowly than the first term of the series at the smallest k."""
     few = np.abs(values[:_ASTRAY_POINTS])
     if not coefficients or not few.all():
@@ -118,7 +121,7 @@ def is_astray(k, values, coefficients) -> bool:
     return bool(slope < min(coefficients) - _ASTRAY or np.ptp(np.sign(values[:_ASTRAY_POINTS])) > 0)
 
 
-def _windows(points):
+def _windows(points: int) -> Iterator[Any]:
     """Numbers of the smallest k to try, all of them first."""
     while points > _FEWEST:
         yield points
@@ -126,7 +129,7 @@ def _windows(points):
     yield points
 
 
-def extrapolate(k, values, error, steps=_STEPS) -> Fit:
+def extrapolate(k: np.ndarray, values: np.ndarray, error: np.ndarray, steps: tuple[Any, ...] = _STEPS) -> Fit:
     """The constant that real values of shape (points,) tend to as k -> 0, by a few powers of one of the `steps`.
 
     From all points or, where no step explains those, from the smallest; the steps that explain them agree within the
@@ -143,7 +146,7 @@ def extrapolate(k, values, error, steps=_STEPS) -> Fit:
     return replace(best, error=best.error * min(1.0, best.misfit) + doubt)  # the fit may be far better than `BEND`
 
 
-def _fit(k, difference, error, powers) -> Fit:
+def _fit(k: np.ndarray, difference: np.ndarray, error: np.ndarray, powers: list[float]) -> Fit:
     """Weighted least squares; a misfit beyond the error of the numerics enlarges the error of the coefficient."""
     size = np.abs(difference)
     weight = 1 / (np.hypot(error, BEND * size) + (_ROUNDING * size.max() or 1.0))

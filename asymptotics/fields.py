@@ -37,7 +37,7 @@ class FieldSpace:
     def zero(self) -> "Field":
         return Field(self, {})
 
-    def constant(self, value) -> "Field":
+    def constant(self, value: Any) -> "Field":
         return Field(self, {(None, 0, None): self.domain.convert(value)})
 
     def from_sympy(self, expression: sp.Expr, x: sp.Symbol) -> "Field":
@@ -77,7 +77,7 @@ class Field:
     def __sub__(self, other: "Field") -> "Field":
         return self + -other
 
-    def __mul__(self, other) -> "Field":
+    def __mul__(self, other: Any) -> "Field":
         """Product with a domain element, or with a field (at most one factor has logarithms)."""
         if not isinstance(other, Field):
             return _collect(self.space, [(key, c * other) for key, c in self.terms.items()])
@@ -106,7 +106,7 @@ class Field:
             total = total + primitive * c
         return total
 
-    def at(self, point):
+    def at(self, point: Any) -> Any:
         """Value at a point of the domain; a pole there must have cancelled."""
         domain = self.space.domain
         point, total = domain.convert(point), domain.zero
@@ -120,37 +120,37 @@ class Field:
             total += c * factor * _power(domain, base, power)
         return total
 
-    def _log_at(self, log, point):
+    def _log_at(self, log: int, point: Any) -> Any:
         if point == self.space.domain.convert(self.space.origin):
             return self.space.domain.zero
         return self.space.logs[log, point]
 
 
-def _power(domain, base, power: int):
+def _power(domain: Any, base: Any, power: int) -> Any:
     if power == 0:
         return domain.one  # sympy's ring elements refuse 0**0
     return base**power if power > 0 else domain.one / base**-power
 
 
-def _collect(space: FieldSpace, terms) -> Field:
+def _collect(space: FieldSpace, terms: list[Any]) -> Field:
     total = defaultdict(lambda: space.domain.zero)
     for key, c in terms:
         total[key] += c
     return Field(space, {key: c for key, c in total.items() if c != 0})
 
 
-def _primitive(pole, power):
+def _primitive(pole: int | None, power: int) -> tuple[Any, ...]:
     return (None, 0, pole) if power == -1 else (pole, power + 1, None)
 
 
-def _by_parts(primitive: Field, log) -> Field:
+def _by_parts(primitive: Field, log: int) -> Field:
     """Integral of f log(x - q) given the integral F of f:  F log(x - q) - integral of F/(x - q)."""
     space = primitive.space
     with_log = Field(space, {(pole, power, log): c for (pole, power, _), c in primitive.terms.items()})
     return with_log - (primitive * Field(space, {(log, -1, None): space.domain.one})).integral()
 
 
-def _product(domain, first, second):
+def _product(domain: Any, first: tuple[Any, ...], second: tuple[Any, ...]) -> list[tuple[Any, ...]]:
     """Partial fractions of (x - q)^a (x - q')^b as [((pole, power), weight)]; a pole None means q = 0, a >= 0."""
     (q, a), (q2, b) = first, second
     if a >= 0 and b >= 0:
@@ -177,9 +177,9 @@ def _product(domain, first, second):
     return terms
 
 
-def _two_poles(domain, q, a, q2, b):
+def _two_poles(domain: Any, q: int, a: int, q2: int, b: int) -> list[tuple[Any, ...]]:
     """Partial fractions of (x - q)^-a (x - q2)^-b, from the Taylor series of each factor at the other's pole."""
-    def half(at, power, other, other_power):
+    def half(at: int, power: int, other: int, other_power: int) -> list[tuple[Any, ...]]:
         gap = sp.Integer(at - other)
         return [((at, j - power), domain.from_sympy(sp.binomial(-other_power, j) * gap ** (-other_power - j)))
                 for j in range(power)]

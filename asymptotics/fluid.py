@@ -14,6 +14,7 @@ and evaluated at any k in multiple precision by `response`.
 from fractions import Fraction
 from functools import cache
 from math import factorial
+from typing import Any
 
 import sympy as sp
 
@@ -65,7 +66,7 @@ def shallow_coefficient(order: int) -> sp.Expr:
 
 
 @cache
-def shallow(order=3) -> Expansion:
+def shallow(order: Any = 3) -> Expansion:
     """R = -4/depth - i k depth^2 Re/30 + ... as a series in k."""
     terms = {sp.Integer(m): shallow_coefficient(m) * power_of_i(m) for m in range(int(order) + 1)}
     return Expansion("fluid", "shallow", terms, sp.Integer(int(order) + 1), {"Re": None, "depth": None}, quantity="R")
@@ -125,7 +126,7 @@ def boundary_layer_coefficient(order: int) -> sp.Expr:
 
 
 @cache
-def boundary_layer(terms=3) -> Expansion:
+def boundary_layer(terms: Any = 3) -> Expansion:
     """R = -(3^{1/3}/Gamma(2/3)) (i k Re)^{1/3} - 9 k/(2 pi sqrt 3) + ... as a series in k."""
     powers = [sp.Rational(2 * n + 1, 3) for n in range(terms + 1)]
     found = {power: sp.expand(boundary_layer_coefficient(int(3 * power)) * power_of_i(power)) for power in powers[:-1]}
@@ -157,7 +158,7 @@ def _short_wave_vorticity(n: int) -> tuple[Fraction, ...]:
 
 
 @cache
-def short_waves(terms=2) -> Expansion:
+def short_waves(terms: Any = 2) -> Expansion:
     """R = -2 k - i Re/(2 k) + ... in falling powers of k."""
     found = {sp.Integer(1 - 2 * n): short_wave_coefficient(n) * Re**n for n in range(terms)}
     return Expansion("fluid", "short-waves", found, sp.Integer(1 - 2 * terms), {"Re": None}, quantity="R")
@@ -166,7 +167,7 @@ def short_waves(terms=2) -> Expansion:
 # -- numbers -------------------------------------------------------------------------------------------
 
 
-def response(k, Re, depth=float("inf"), digits: int = 16):
+def response(k: Any, Re: Any, depth: Any = float("inf"), digits: int = 16) -> Any:
     """R at one k > 0, as an mpmath complex number good to about `digits` digits.
 
     >>> print(response(1, 100, digits=15))
@@ -186,7 +187,7 @@ class WallResponse(sp.Function):
 
     nargs = 3
 
-    def _eval_evalf(self, prec):
+    def _eval_evalf(self, prec: int) -> Any:
         if any(argument.free_symbols for argument in self.args):
             return None
         digits = max(16, int(prec / 3.3) + 2)
@@ -194,14 +195,14 @@ class WallResponse(sp.Function):
         value = response(k, Re, depth, digits)
         return sp.Float(value.real, digits) + sp.I * sp.Float(value.imag, digits)
 
-    def _sympystr(self, printer):
+    def _sympystr(self, printer: Any) -> str:
         return f"R({', '.join(printer.doprint(argument) for argument in self.args)})"
 
-    def _latex(self, printer):
+    def _latex(self, printer: Any) -> Any:
         return f"R({', '.join(printer.doprint(argument) for argument in self.args)})"
 
 
-def _short_wave_sum(mp, k, Re, digits):
+def _short_wave_sum(mp: Any, k: Any, Re: Any, digits: int) -> Any:
     """The short-wave series, an asymptotic one, up to terms below the digits asked for."""
     with mp.workdps(digits + 10):
         ratio, total, n = mp.mpf(Re) / mp.mpf(k) ** 2, mp.mpc(0), 0
@@ -214,7 +215,7 @@ def _short_wave_sum(mp, k, Re, digits):
     return total
 
 
-def _unbounded_response(mp, k, Re, digits):
+def _unbounded_response(mp: Any, k: Any, Re: Any, digits: int) -> Any:
     """Taylor series of Ai(q^2) and J(q), with enough digits for their cancellation."""
     with mp.workdps(int(digits + 20 + 1.2 * float(k) ** 2 / float(Re))):
         f = mp.root(mp.mpc(0, mp.mpf(k) * mp.mpf(Re)), 3)
@@ -237,7 +238,7 @@ def _unbounded_response(mp, k, Re, digits):
         return -f * mp.airyai(q * q) / total
 
 
-def _lid_response(mp, k, Re, depth, digits):
+def _lid_response(mp: Any, k: Any, Re: Any, depth: Any, digits: int) -> Any:
     """Two Taylor series for the vorticity, combined so that Psi = Psi' = 0 at the lid."""
     growth = float(k * depth + (2 / 3) * (k * Re) ** 0.5 * depth**1.5)
     with mp.workdps(int(digits + 20 + growth)):
@@ -250,7 +251,7 @@ def _lid_response(mp, k, Re, depth, digits):
     return value
 
 
-def _stream_function(mp, k, Re, h, vorticity, slope):
+def _stream_function(mp: Any, k: Any, Re: Any, h: Any, vorticity: tuple[int, ...], slope: int) -> tuple[Any, ...]:
     """Psi and Psi' at z = h from Psi(0) = 0, Psi'(0) = slope and the vorticity's value and slope at the wall."""
     omega = [mp.mpc(vorticity[0]), mp.mpc(vorticity[1])]
     psi = [mp.mpc(0), mp.mpc(slope)]

@@ -9,6 +9,7 @@ equation and the next coefficient of the speed.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
@@ -49,25 +50,25 @@ class Layer:
     origin: int | None = None
     logs: Mapping[tuple[int, sp.Expr], sp.Symbol] = field(default_factory=dict)
 
-    def at(self, point, values: sp.Expr) -> sp.Expr:
+    def at(self, point: Any, values: sp.Expr) -> sp.Expr:
         """Write w, u, t, n in a condition as the values of this layer's fields at `point`."""
         return values.subs({symbol: edge_value(self.name, symbol.name, point) for symbol in linearise.FIELDS})
 
 
-def edge_value(layer: str, name: str, point) -> sp.Symbol:
+def edge_value(layer: str, name: str, point: Any) -> sp.Symbol:
     return _EdgeValue(layer, name, sp.sympify(point))
 
 
 class _EdgeValue(sp.Symbol):
     """The value of a field at an edge."""
 
-    def __new__(cls, layer, name, point):
+    def __new__(cls, layer: str, name: str, point: Any) -> "_EdgeValue":
         symbol = super().__new__(cls, f"{name}@{layer}({point})")
         symbol.where = (layer, name, point)
         return symbol
 
 
-def long_wave(expression, scale: Mapping[str, int] | None = None):
+def long_wave(expression: Any, scale: Mapping[str, int] | None = None) -> Any:
     """Write k = -i kappa, sigma = kappa speed, w = kappa w (and field = kappa^scale field) in a matrix or condition."""
     scale = {"w": 1, **(scale or {})}
     powers = [kappa ** scale.get(name, 0) for name in FIELDS]
@@ -91,7 +92,7 @@ class Hierarchy:
     """
 
     def __init__(self, layers: Sequence[Layer], conditions: Sequence[sp.Expr], q: int = 1,
-                 given: Mapping[sp.Symbol, Sequence[sp.Expr]] | None = None, eigenvalue: bool = True):
+                 given: Mapping[sp.Symbol, Sequence[sp.Expr]] | None = None, eigenvalue: bool = True) -> None:
         self.q, self.given, self.eigenvalue = q, dict(given or {}), eigenvalue
         self.domain = _domain(layers, conditions, self.given)
         self.layers = {layer.name: _SolvableLayer(layer, self.domain) for layer in layers}
@@ -136,7 +137,7 @@ class Hierarchy:
             layer.add_homogeneous(order, solution[:count])
             solution = solution[count:]
 
-    def _residual(self, condition, order: int):
+    def _residual(self, condition: dict[tuple[Any, ...], Any], order: int) -> Any:
         """The part of a condition at this order, with the fields and speeds found so far."""
         total = self.domain.zero
         for (target, speed_power, shift), c in condition.items():
@@ -149,13 +150,13 @@ class Hierarchy:
                                   for a in range(order - shift + 1)), self.domain.zero)
         return total
 
-    def _edge(self, target, order: int):
+    def _edge(self, target: "_EdgeValue | None", order: int) -> Any:
         if target is None:
             return self.domain.one if order == 0 else self.domain.zero
         layer, name, point = target.where
         return self.layers[layer].solution[order][name].at(self.domain.from_sympy(point))
 
-    def _unknown_columns(self):
+    def _unknown_columns(self) -> list[list[Any]]:
         """Matrix of the conditions at epsilon = 0 acting on the constants of integration and the speed."""
         rows = []
         for condition in self._conditions:
@@ -166,7 +167,7 @@ class Hierarchy:
             rows.append(row)
         return rows
 
-    def _leading(self, condition, layer, j):
+    def _leading(self, condition: dict[tuple[Any, ...], Any], layer: "_SolvableLayer", j: int) -> Any:
         total = self.domain.zero
         for (target, speed_power, shift), c in condition.items():
             if target is not None and shift == 0 and target.where[0] == layer.name:
@@ -198,7 +199,7 @@ _epsilon = sp.Dummy("epsilon")
 class _SolvableLayer:
     """A layer's expanded system, its solutions at epsilon = 0, and the solution so far."""
 
-    def __init__(self, layer: Layer, domain):
+    def __init__(self, layer: Layer, domain: Any) -> None:
         self.name, self.names = layer.name, FIELDS
         logs = {(pole, domain.from_sympy(sp.sympify(point))): domain.from_sympy(value)
                 for (pole, point), value in layer.logs.items()}
@@ -269,7 +270,7 @@ class _SolvableLayer:
                 fields[name] = fields[name] + solution[name] * constant
 
 
-def _domain(layers, conditions, given):
+def _domain(layers: Any, conditions: Any, given: Any) -> Any:
     """Rational functions, with rational coefficients, of every parameter."""
     symbols = set().union(*(condition.free_symbols for condition in conditions))
     for layer in layers:

@@ -6,7 +6,7 @@ coefficient of their own: the growth of long waves is often of higher order than
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from .claims import claim_of
 from .comparison import PART_NAMES, LimitMismatch, TooFewPoints
 from .explain import extrapolate, is_astray
 from .points import DECADES, FEWEST, PARTS, check_part, points_of
+
+if TYPE_CHECKING:
+    from .series import Expansion
 
 LIMIT = 1e-3  # relative tolerance: a tenth of the 1 % by which a wrong limit should be found
 _STANDARD_ERRORS = 5.0  # by which a limit must be off before that is said, and not that k is too large
@@ -106,7 +109,8 @@ def assert_limit(numeric: Any, expected: Any, k: Any, *, part: str = "both", err
     return limits
 
 
-def _limit(name, expected, k, values, asymptote, floor) -> Limit | None:
+def _limit(name: str, expected: Any, k: np.ndarray, values: np.ndarray, asymptote: np.ndarray,
+           floor: np.ndarray) -> Limit | None:
     """The limit of a part, None where nothing is known of it."""
     values = getattr(values, name)
     if hasattr(expected, "next_power"):
@@ -122,7 +126,7 @@ def _limit(name, expected, k, values, asymptote, floor) -> Limit | None:
     return Limit(name, fit.value + (not vanishes), fit.error, float(not vanishes), 1.0, 0.0, fit.misfit, astray)
 
 
-def _coefficient(name, law, k, values, floor) -> Limit | None:
+def _coefficient(name: str, law: "Expansion", k: np.ndarray, values: np.ndarray, floor: np.ndarray) -> Limit | None:
     """The first coefficient of a part of an expansion."""
     claim = claim_of(law, None)
     known = claim.coefficients[name]

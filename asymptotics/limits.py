@@ -12,6 +12,7 @@ imaginary parts are judged separately too: the larger one would hide a wrong coe
 """
 
 from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,11 +21,14 @@ from .comparison import TOLERANCE, Comparison, OrderMismatch, Part
 from .explain import BEND, explain, is_astray
 from .points import FEWEST, NOISE, PARTS, check_part, only, points_of, used
 
+if TYPE_CHECKING:
+    from .claims import Claim
+
 MANY = 5  # more points than these allow to fit a drift of the slope
 
 
-def compare(numeric, series, k, expected=None, *, part: str = "both", correction="known", error=None,
-            largest: float | None = None, tolerance: float = TOLERANCE) -> Comparison:
+def compare(numeric: Any, series: Any, k: Any, expected: Any = None, *, part: str = "both", correction: Any = "known",
+            error: Any = None, largest: float | None = None, tolerance: float = TOLERANCE) -> Comparison:
     """Compare numerics with a series over wavenumbers (or values of another gauge) k of shape (points,).
 
     numeric, series   functions of an array k, of a number k, or arrays of the shape of k; complex or real. The series
@@ -58,7 +62,7 @@ def compare(numeric, series, k, expected=None, *, part: str = "both", correction
                       left_out, whole > claim.expected)
 
 
-def assert_order(numeric, series, k, expected: float | None = None, **options) -> Comparison:
+def assert_order(numeric: Any, series: Any, k: np.ndarray, expected: float | None = None, **options: Any) -> Comparison:
     """Return the comparison, or raise OrderMismatch with its table. Arguments as for `compare`.
 
     `series` may be an `Expansion` whose parameters all have values: it knows the power to expect.
@@ -82,7 +86,8 @@ def assert_order(numeric, series, k, expected: float | None = None, **options) -
 # -- one part --------------------------------------------------------------------------------------------
 
 
-def _part(name, claim, k, numeric, series, floor, correction, tolerance) -> Part:
+def _part(name: str, claim: "Claim", k: np.ndarray, numeric: np.ndarray, series: np.ndarray, floor: np.ndarray,
+          correction: float | None, tolerance: float) -> Part:
     """Judge the real or imaginary part of all points, heard or not."""
     expected = claim.parts[name]
     if name == "imag" and not numeric.imag.any() and not series.imag.any():
@@ -105,7 +110,7 @@ def _part(name, claim, k, numeric, series, floor, correction, tolerance) -> Part
     return Part(name, expected, order, tolerance, claim.towards, why)
 
 
-def _order(k, difference, error, correction) -> float:
+def _order(k: np.ndarray, difference: np.ndarray, error: np.ndarray, correction: float | None) -> float:
     """Least-squares slope; a point counts less the nearer its difference is to the numerics' error."""
     columns = [np.ones_like(k), np.log(k)]
     if correction is not None:

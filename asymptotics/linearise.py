@@ -54,7 +54,7 @@ class Linearisation:
     across: bool = False
     quasi_steady: bool = False
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for row in self.momentum:
             residual = sp.simplify(self.concrete(row.subs(small, 0)))
             if residual != 0:

@@ -1,6 +1,7 @@
 """Parameters of a flow: name, allowed range and the reason for it."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import sympy as sp
 
@@ -38,7 +39,7 @@ class Parameter:
         upper = "" if self.highest == sp.oo else f" and < {self.highest}"
         return f"{left}{self.lowest}{upper}" + (", or inf" if self.infinite else "")
 
-    def read(self, text) -> sp.Expr:
+    def read(self, text: Any) -> sp.Expr:
         """An exact number from a string or a number, checked against the range."""
         if str(text).strip().lower() in ("inf", "infinity", "oo"):
             value = sp.oo

@@ -1,5 +1,7 @@
 """The points at which numerics are compared: which count, and what has been left out."""
 
+from typing import Any
+
 import numpy as np
 
 from .comparison import TooFewPoints
@@ -18,7 +20,7 @@ def check_part(part: str) -> None:
         raise ValueError(f"part must be one of {', '.join(PARTS)} (got {part!r})")
 
 
-def points_of(numeric, series, k, error):
+def points_of(numeric: Any, series: Any, k: Any, error: Any) -> Any:
     """k, numerics, series and error of the numerics, complex and in increasing k, and what has been left out."""
     __tracebackhide__ = True
     k = np.asarray(k, dtype=float).ravel()
@@ -42,7 +44,7 @@ def points_of(numeric, series, k, error):
     return k, numeric[once], series[once], floor[once], left_out
 
 
-def used(k, heard, largest, left_out):
+def used(k: Any, heard: Any, largest: Any, left_out: Any) -> Any:
     """Which points are `heard` above the noise, which lie near enough to k = 0, and what has been left out."""
     __tracebackhide__ = True
     highest = largest if largest is not None else DECADES * min(k[heard], default=np.inf)
@@ -56,7 +58,7 @@ def used(k, heard, largest, left_out):
     return heard, near, left_out
 
 
-def _values(values, k):
+def _values(values: Any, k: np.ndarray) -> np.ndarray:
     """A function of an array or of a number, or an array, as complex values of the shape of k."""
     __tracebackhide__ = True
     if not callable(values):
@@ -70,6 +72,6 @@ def _values(values, k):
     return found
 
 
-def only(part, values):
+def only(part: str, values: np.ndarray) -> np.ndarray:
     """The complex values, without their imaginary or real part where only the other is asked for."""
     return {"both": values, "real": values.real + 0j, "imag": 1j * values.imag}[part]

@@ -11,7 +11,8 @@ import sympy as sp
 from . import __version__
 from .series import Expansion
 
-_COLUMNS = "k", "growth_rate", "phase_speed", "error", "degree", "status"  # as `stability dispersion` has them
+_COLUMNS = ("k", "growth_rate", "phase_speed", "error", "group_speed", "group_error", "degree", "status")
+"""As `stability dispersion` has them."""
 _FUNCTIONS = {
     "gamma": "the gamma function", "log": "the natural logarithm",
     "WallResponse": "response of the fluid's shear stress to a wavy wall of unit amplitude, Psi''(0)/s0 of "
@@ -31,7 +32,7 @@ def table(expansion: Expansion, meanings: dict[str, str]) -> str:
     return "\n".join([*lines, "", *_explained(expansion, meanings)])
 
 
-def _explained(expansion, meanings):
+def _explained(expansion: Expansion, meanings: dict[str, str]) -> list[str]:
     """A line for the sum, and for each symbol and function in the coefficients."""
     gauge, coefficients = expansion.gauge, list(expansion.terms.values())
     of = "" if expansion.wavenumber == gauge else f", at the wavenumber k = {expansion.wavenumber}"
@@ -64,7 +65,7 @@ def latex(expansion: Expansion, symbols: dict[str, str]) -> str:
     return "\n".join([rf"% \sigma = \sum_p \sigma_p {gauge}^p", *(line + r" \\" for line in lines)])
 
 
-def _printed(c, symbols):
+def _printed(c: Any, symbols: dict[str, str]) -> Any:
     """A coefficient with the angle itself in trigonometric functions, not its degrees, and Fr^2 as a square."""
     changed = {}
     for symbol in c.free_symbols:
@@ -92,11 +93,11 @@ def as_json(expansion: Expansion) -> str:
     return json.dumps(record, indent=1, allow_nan=False)
 
 
-def _pair(value):
+def _pair(value: complex | None) -> list[float] | None:
     return None if value is None else [value.real, value.imag]
 
 
-def _plain(value):
+def _plain(value: Any) -> Any:
     """A JSON number; infinity, which JSON lacks, as the string that the command line takes."""
     if value is None:
         return None
@@ -110,8 +111,9 @@ def numbers(expansion: Expansion, k: np.ndarray, form: str | None) -> str:
     """The series at wavenumbers k in the columns of `stability dispersion`: without error bars, for it has none."""
     highest = max(power for power, c in expansion.terms.items() if c != 0)
     status = f"series to k^{highest}; error O(k^{expansion.next_power})"
-    rows = [dict(zip(_COLUMNS, (one, sigma.real, -sigma.imag / one + 0.0, None, None, status), strict=True))
-            for one, sigma in zip(k.tolist(), expansion.function()(k).tolist(), strict=True)]
+    sigma, slope = (series.function()(k).tolist() for series in (expansion, expansion.derivative()))
+    rows = [dict(zip(_COLUMNS, (one, here.real, -here.imag / one + 0.0, None, -steep.imag + 0.0, None, None, status),
+                     strict=True)) for one, here, steep in zip(k.tolist(), sigma, slope, strict=True)]
     parameters = {name: float(value) if value is not None else None for name, value in expansion.parameters.items()}
     header = {"flow": expansion.flow, "method": "expansion", "version": __version__}
     about = {"regime": expansion.regime, "order": str(highest)}
@@ -124,7 +126,7 @@ def numbers(expansion: Expansion, k: np.ndarray, form: str | None) -> str:
     return _columns(rows)
 
 
-def _csv(header, rows):
+def _csv(header: dict[str, Any], rows: list[dict[str, Any]]) -> str:
     text = io.StringIO()
     text.writelines(f"# {key}: {value}\n" for key, value in header.items())
     writer = csv.DictWriter(text, _COLUMNS, lineterminator="\n")

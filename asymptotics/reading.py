@@ -1,6 +1,7 @@
 """Numbers written by `stability dispersion ... --csv`, read from a file or from standard input."""
 
 import sys
+from typing import Any
 
 from .usage import BadUsage
 
@@ -12,7 +13,7 @@ def source(name: str) -> str:
     return "standard input" if name == "-" else name
 
 
-def read_csv(name: str):
+def read_csv(name: str) -> Any:
     """Header {key: text} from `# key: value` lines, columns {name: array (rows,)}, and what has been left out."""
     import csv
 
@@ -39,7 +40,7 @@ def _read(name: str) -> str:
                        ) from None
 
 
-def _columns(name: str, names, rows):
+def _columns(name: str, names: Any, rows: Any) -> Any:
     """Numbers of the resolved rows; the phase speed where there is one, the error 0 where there is none."""
     import numpy as np
 
@@ -65,11 +66,11 @@ def _columns(name: str, names, rows):
 class _keep_open:
     """A stream that its `with` block does not close."""
 
-    def __init__(self, stream):
+    def __init__(self, stream: Any) -> None:
         self.stream = stream
 
-    def __enter__(self):
+    def __enter__(self) -> Any:
         return self.stream
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: Any) -> None:
         return None

@@ -118,6 +118,16 @@ class Expansion:
         terms = {p: c for p, c in self.terms.items() if p <= power}
         return replace(self, terms=terms, next_power=min([*left_out, self.next_power]))
 
+    def derivative(self) -> "Expansion":
+        """The slope of the sum in the gauge; raises nothing.
+
+        >>> from asymptotics import expand
+        >>> print(expand("film").derivative().terms[0])
+        -2*I
+        """
+        terms = {power - 1: power * c for power, c in self.terms.items() if power != 0}
+        return replace(self, terms=terms, next_power=self.next_power - 1)
+
     def function(self, **values: Any) -> Callable[[Any], Any]:
         """A numpy function of the gauge (shape in, same shape out, complex), all parameters being numbers.
 
@@ -137,7 +147,7 @@ class Expansion:
                                 f"give values, e.g. {missing[0]}=1")
         pairs = [(c, float(power)) for power, c in coefficients.items()]
 
-        def series(gauge):
+        def series(gauge: Any) -> Any:
             gauge = np.asarray(gauge, dtype=float)
             return sum((c * gauge**power for c, power in pairs), np.zeros_like(gauge, dtype=complex))
 
@@ -148,7 +158,7 @@ class Expansion:
         free = set().union(*(c.free_symbols for c in self.terms.values()))
         return sorted(free, key=str)
 
-    def _part(self, part) -> sp.Expr:
+    def _part(self, part: Any) -> sp.Expr:
         return sp.Add(*(part(sp.expand_complex(c) if c.is_Number else c) * self.gauge**power
                         for power, c in self.terms.items()))
 
@@ -158,12 +168,12 @@ def vanishes(coefficient: complex | None, part: str) -> bool:
     return coefficient is not None and abs(getattr(coefficient, part)) <= _ROUNDING * abs(coefficient)
 
 
-def gcd_of(steps) -> sp.Rational:
+def gcd_of(steps: Any) -> sp.Rational:
     """The largest rational number of which all the given ones are multiples."""
     return sp.Rational(sp.igcd(*(step.p for step in steps), 0), sp.ilcm(*(step.q for step in steps), 1))
 
 
-def power_of_i(power) -> sp.Expr:
+def power_of_i(power: Any) -> sp.Expr:
     """i^power on the principal branch, as cos + i sin."""
     angle = sp.pi * sp.Rational(power) / 2
     return sp.cos(angle) + sp.I * sp.sin(angle)

@@ -19,7 +19,7 @@ def parse_spec(text: str, name: str) -> np.ndarray:
     return values
 
 
-def _range(text, name):
+def _range(text: str, name: str) -> np.ndarray:
     parts = text.split(":")
     linear = parts[3:] == ["lin"]
     if len(parts) != 3 and not linear:
@@ -36,7 +36,7 @@ def _range(text, name):
     return (np.linspace if linear else np.geomspace)(start, stop, count)
 
 
-def _number(text, name):
+def _number(text: str, name: str) -> float:
     try:
         value = float(text)
     except ValueError:

@@ -4,6 +4,7 @@ import os
 import sys
 from contextlib import suppress
 from errno import EBADF
+from typing import Any
 
 
 class Closed:
@@ -11,22 +12,22 @@ class Closed:
 
     encoding = "utf-8"
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._written = False
 
-    def write(self, text):
+    def write(self, text: Any) -> None:
         self._written = True
         self.flush()
 
-    def flush(self):
+    def flush(self) -> None:
         if self._written:
             raise OSError(EBADF, "it is closed")
 
-    def isatty(self):
+    def isatty(self) -> Any:
         return False
 
 
-def open_streams():
+def open_streams() -> None:
     """Put something in the place of streams that are closed; of their numbers no file of ours then gets one."""
     for stream in (sys.stdin, sys.stdout):
         if stream is None:
@@ -37,7 +38,7 @@ def open_streams():
         sys.stderr = open(os.devnull, "w")  # noqa: SIM115 - to the end of the program
 
 
-def drop_output():
+def drop_output() -> None:
     """Forget what is still to be written to standard output: at the end of the program it would fail again."""
     if isinstance(sys.stdout, Closed):
         sys.stdout = open(os.devnull, "w")  # noqa: SIM115
@@ -46,7 +47,7 @@ def drop_output():
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def say(line):
+def say(line: Any) -> None:
     """Print a line on standard error; where that fails, nobody reads it."""
     with suppress(OSError):
         print(line, file=sys.stderr, flush=True)

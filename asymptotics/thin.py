@@ -4,7 +4,9 @@ A layer of thickness ~ delta is stretched to 0 < y < 1 and the steady equations 
 integrals over y is left, all of polynomials. The friction law is mu = mu1 + (mu2 - mu1) I/(I0 + I), thesis (1.11).
 """
 
+from collections.abc import Mapping
 from functools import cache
+from typing import Any
 
 import sympy as sp
 
@@ -24,7 +26,7 @@ DEFAULTS = {"mu1": "0.3818628674187188", "mu2": "0.6434683848584607", "I0": "0.2
 LATEX = {"mu1": r"\mu_1", "mu2": r"\mu_2", "I0": "I_0", "delta": r"\delta"}
 
 
-def rising(values) -> str:
+def rising(values: Mapping[Any, Any]) -> str:
     """Why the friction coefficients given do not belong to a law; empty if they do."""
     low, high = values.get("mu1"), values.get("mu2")
     return f"mu2 must exceed mu1, got {high} and {low}" if low and high and not low < high else ""
@@ -47,7 +49,7 @@ def inertial_number(mu: sp.Expr) -> sp.Expr:
     return sp.factor(found).subs(symbol, mu)
 
 
-def layer_law(flow: str, integrand: sp.Expr, order, quantity: str, names: tuple[str, ...] = NAMES) -> Expansion:
+def layer_law(flow: str, integrand: sp.Expr, order: Any, quantity: str, names: tuple[str, ...] = NAMES) -> Expansion:
     """Expansion in delta of the integral over 0 < y < 1 of an integrand that begins with delta^2."""
     terms, derivative = {}, integrand
     for power in range(int(order) + 1):

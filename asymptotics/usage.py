@@ -3,6 +3,7 @@
 import argparse
 import sys
 from difflib import get_close_matches
+from typing import Any, NoReturn
 
 
 class BadUsage(ValueError):
@@ -12,16 +13,16 @@ class BadUsage(ValueError):
 class Parser(argparse.ArgumentParser):
     """Errors as exceptions; no value is given twice; examples in one line, to be copied."""
 
-    def __init__(self, **options):
+    def __init__(self, **options: Any) -> None:
         super().__init__(formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False, **options)
         for action in (None, "store"):
             self.register("action", action, _Once)
         self.set_defaults(given=frozenset())
 
-    def error(self, message):
+    def error(self, message: str) -> NoReturn:
         raise BadUsage(f"{message} (see: {self.prog} --help)")
 
-    def exit(self, status=0, message=None):
+    def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
         sys.stdout.flush()  # of the help: where nobody reads it, say so in `main`
         super().exit(status, message)
 
@@ -29,7 +30,7 @@ class Parser(argparse.ArgumentParser):
 class _Once(argparse.Action):
     """Store a value, and in `given` that it was given: twice is refused, or the first value would get lost."""
 
-    def __call__(self, parser, namespace, values, option_string=None):
+    def __call__(self, parser: Any, namespace: Any, values: Any, option_string: Any = None) -> None:
         if self.dest in namespace.given:
             raise BadUsage(f"{option_string}: given twice, with {getattr(namespace, self.dest)!r} and {values!r}; "
                            "give it once")
@@ -40,10 +41,10 @@ class _Once(argparse.Action):
 class Help(argparse.Action):
     """Print the help of a verb, with the parameters of the flow that has been named before, if any."""
 
-    def __init__(self, option_strings, dest, help):
+    def __init__(self, option_strings: list[str], dest: str, help: str) -> None:
         super().__init__(option_strings, argparse.SUPPRESS, nargs=0, default=argparse.SUPPRESS, help=help)
 
-    def __call__(self, parser, namespace, values, option_string=None):
+    def __call__(self, parser: Any, namespace: Any, values: Any, option_string: Any = None) -> None:
         from . import flows
 
         group = namespace.parameters
@@ -57,12 +58,12 @@ class Help(argparse.Action):
         parser.exit()
 
 
-def nearest(name: str, known) -> str:
+def nearest(name: str, known: Any) -> str:
     match = get_close_matches(name, known, 1)
     return f" (did you mean {match[0]!r}?)" if match else ""
 
 
-def add_parameters(verb) -> None:
+def add_parameters(verb: "Parser") -> None:
     """Flags of every flow: a flow is a module that costs sympy, so only when a verb needs them."""
     from . import flows
 

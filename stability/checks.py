@@ -2,6 +2,7 @@
 
 import os
 from math import inf
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +13,7 @@ LARGEST = 1e20  # of a parameter or wavenumber, and 1/LARGEST the smallest besid
 _SHOWN = 60  # characters of a wrong value in a message
 
 
-def as_number(value):
+def as_number(value: Any) -> float | None:
     """The value as a float, or None if it is no real number: text and zero-dimensional arrays may be."""
     if type(value) is float:
         return value
@@ -26,18 +27,18 @@ def as_number(value):
         return None
 
 
-def in_double_precision(number):
+def in_double_precision(number: float) -> bool:
     """Whether a finite number is 0 or of a size whose products neither overflow nor underflow."""
     return number == 0 or 1 / LARGEST <= abs(number) <= LARGEST
 
 
-def shown(value, number=None):
+def shown(value: Any, number: Any = None) -> Any:
     """A value given by the user, in one line of bounded length; as a number where it is one."""
     text = " ".join(repr(value).split()) if number is None else f"{number:g}"
     return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
 
 
-def flat(values, name):
+def flat(values: Any, name: str) -> list[float]:
     """One value or a sequence of them as a list; what has more dimensions is refused, or its shape would be lost."""
     array = values if isinstance(values, np.ndarray) else np.asarray(values, dtype=object)
     if array.ndim > 1:
@@ -46,7 +47,7 @@ def flat(values, name):
     return array.ravel().tolist()
 
 
-def check_wavenumbers(k, name="k"):
+def check_wavenumbers(k: Any, name: str = "k") -> np.ndarray:
     """Return k, a number or a sequence, as a float array (points,), or raise a ParameterError."""
     values = flat(k, name)
     if not values:
@@ -61,7 +62,7 @@ def check_wavenumbers(k, name="k"):
     return np.array(numbers)
 
 
-def check_wavenumber(k, name="k"):
+def check_wavenumber(k: Any, name: Any = "k") -> Any:
     """Return one wavenumber as a float, or raise a ParameterError."""
     wavenumbers = check_wavenumbers(k, name)
     if len(wavenumbers) != 1:
@@ -69,7 +70,7 @@ def check_wavenumber(k, name="k"):
     return float(wavenumbers[0])
 
 
-def check_tolerance(value, name="tolerance"):
+def check_tolerance(value: Any, name: str = "tolerance") -> float:
     """Return a relative tolerance as a float, or raise a ParameterError."""
     number = as_number(value)
     if number is None or not 1e-15 <= number <= 0.1:
@@ -77,7 +78,7 @@ def check_tolerance(value, name="tolerance"):
     return number
 
 
-def check_integer(value, name, low, high):
+def check_integer(value: Any, name: str, low: int, high: int) -> int:
     """Return an integer, given as a number or as text, or raise a ParameterError."""
     number = as_number(value) if not isinstance(value, str) or value.isdecimal() else None
     if number is None or not low <= number <= high or number != int(number):
@@ -85,21 +86,21 @@ def check_integer(value, name, low, high):
     return int(number)
 
 
-def check_options(name, value, options):
+def check_options(name: str, value: str, options: tuple[Any, ...]) -> str:
     """Return one of a few names, or raise a ParameterError."""
     if not (isinstance(value, str) and value in options):
         raise ParameterError(f"{name} must be one of {', '.join(options)} (got {shown(value)})")
     return str(value)
 
 
-def check_flag(name, value):
+def check_flag(name: str, value: bool) -> bool:
     """Return True or False, or raise a ParameterError."""
     if not isinstance(value, bool | np.bool_):
         raise ParameterError(f"{name} must be True or False (got {shown(value)})")
     return bool(value)
 
 
-def check_range(values, name):
+def check_range(values: Any, name: Any) -> Any:
     """Return two positive numbers low < high as a tuple of floats, or raise a ParameterError."""
     numbers = check_wavenumbers(values, name).tolist()
     if len(numbers) != 2 or not numbers[0] < numbers[1]:
@@ -107,7 +108,7 @@ def check_range(values, name):
     return numbers[0], numbers[1]
 
 
-def as_file_name(path):
+def as_file_name(path: Any) -> str | None:
     """The name of a file as text, or None if no file can have it: neither text nor a path, empty, or with a NUL."""
     name = os.fspath(path) if isinstance(path, str | os.PathLike) else None
     if not isinstance(name, str) or not name or "\0" in name:
@@ -119,7 +120,7 @@ def as_file_name(path):
     return name
 
 
-def check_file_name(path, name):
+def check_file_name(path: Any, name: str) -> str:
     """Return the name of a file as text, or raise a ParameterError that begins with `name`."""
     text = as_file_name(path)
     if text is None:

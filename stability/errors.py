@@ -1,5 +1,7 @@
 """What can go wrong, by name. Messages say what was asked, what was found and what to try."""
 
+from typing import Any
+
 
 class StabilityError(Exception):
     """Base of all errors of this package.
@@ -34,16 +36,16 @@ class NotSmooth(ParameterError):
     `where` names flow and layer, `complaint` the coefficient, `height` is the z where it is rough, or None.
     """
 
-    def __init__(self, where, complaint, height, remedy):
+    def __init__(self, where: Any, complaint: Any, height: Any, remedy: Any) -> None:
         super().__init__(where, complaint, height, remedy)
         self.where, self.complaint, self.height, self.remedy = where, complaint, height, remedy
 
-    def of(self, flow, bottom):
+    def of(self, flow: Any, bottom: Any) -> Any:
         """Return the same with the flow named, and the height measured from where z = 0 in it."""
         height = None if self.height is None else self.height + bottom
         return NotSmooth(f"{flow}: {self.where}", self.complaint, height, self.remedy)
 
-    def __str__(self):
+    def __str__(self) -> str:
         place = "" if self.height is None else f" near z = {self.height:.4g}"
         return f"{self.where}: {self.complaint}{place}: {self.remedy}"
 
@@ -80,6 +82,6 @@ class WorkersLost(StabilityError):
     """Worker processes end again and again before they have finished anything."""
 
 
-def naming(flow, reason):
+def naming(flow: Any, reason: str) -> str:
     """Return the reason with the flow named in front, once."""
     return reason if reason.startswith(f"{flow}: ") else f"{flow}: {reason}"

@@ -70,7 +70,7 @@ def load(name: str) -> Any:
     return import_module(f"{__name__}.{name}")
 
 
-def regime_for(flow, name: str | None, values: Mapping) -> str:
+def regime_for(flow: Any, name: str | None, values: Mapping) -> str:
     """The regime called `name`, or the first that accepts the values."""
     if name is not None and name not in flow.REGIMES:
         raise NoSuchFlow(f"no regime {name!r}; the regimes are {', '.join(flow.REGIMES)}")
@@ -110,7 +110,7 @@ def expand(flow_name: str, regime: str | None = None, order: Any = None, *, numb
     return expansion.with_parameters(**{name: value for name, value in exact.items() if name in limit.parameters})
 
 
-def _power(order, name: str, regime: Regime) -> sp.Rational:
+def _power(order: Any, name: str, regime: Regime) -> sp.Rational:
     try:
         power = sp.Rational(str(order)) if order is not None else regime.default
     except (TypeError, ValueError, ZeroDivisionError):

@@ -9,6 +9,7 @@ Omega ~ delta^2 makes P = 1 + O(delta^5), which changes Omega at order delta^6 o
 """
 
 from functools import cache
+from typing import Any
 
 import sympy as sp
 
@@ -30,7 +31,7 @@ gamma = sp.Symbol("gamma", positive=True)
 
 
 @cache
-def rotation(order=4) -> Expansion:
+def rotation(order: Any = 4) -> Expansion:
     """Omega(1) = Gamma_0 delta^2/(lambda - 1) + ..., Gamma_0 = I0 gamma, lambda = mu2/mu1: (2.11) and the next orders.
 
     >>> rotation(2).with_parameters(mu1="1/4", mu2="1/2", I0=1, gamma=3).coefficient(2)

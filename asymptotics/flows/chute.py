@@ -5,6 +5,7 @@ W/mu1 and mu(I) = mu1 x/W, so that -v' = I sqrt(W/mu1), v(1) = 0, and the flux f
 """
 
 from functools import cache
+from typing import Any
 
 import sympy as sp
 
@@ -21,7 +22,7 @@ DEFAULTS, LATEX = USUAL, PRINTED
 
 
 @cache
-def flux(order=4) -> Expansion:
+def flux(order: Any = 4) -> Expansion:
     """Q = I0/sqrt(mu1) delta^2/(lambda - 1) + ..., lambda = mu2/mu1: (2.22) and the next orders.
 
     >>> flux(2).with_parameters(mu1="1/4", mu2="1/2", I0=1).coefficient(2)

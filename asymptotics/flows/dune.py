@@ -7,6 +7,7 @@ interface to 1 at the yield surface, all coefficients are rational with poles at
 """
 
 from functools import cache
+from typing import Any
 
 import sympy as sp
 
@@ -82,7 +83,7 @@ def conditions() -> tuple[sp.Expr, ...]:
     return (*interface, layer().at(1, FIELDS[0]), layer().at(1, FIELDS[1]))
 
 
-def hierarchy(response, q: int) -> Hierarchy:
+def hierarchy(response: tuple[Any, ...], q: int) -> Hierarchy:
     """Orders in epsilon, (i k) = epsilon^q, for R = sum of response[m] epsilon^m."""
     return Hierarchy([layer()], conditions(), q, {R: response})
 
@@ -104,7 +105,7 @@ def _layer_hierarchy() -> Hierarchy:
 
 
 @cache
-def shallow(order=2) -> Expansion:
+def shallow(order: Any = 2) -> Expansion:
     """Fluid under a lid, k depth << 1: (4.84), and the coefficient A of (4.85).
 
     >>> A = shallow().with_parameters(shields="3/2", depth=10, mu1="2/5", b=1, Re="1/10").coefficient(2)
@@ -119,7 +120,7 @@ def shallow(order=2) -> Expansion:
 
 
 @cache
-def boundary_layer(order=2) -> Expansion:
+def boundary_layer(order: Any = 2) -> Expansion:
     """Unbounded fluid, k^2 << Re: (4.81), (4.82), a power 5/3 that vanishes, and the first corrections."""
     response = {symbol: fluid.boundary_layer_coefficient(m) for m, symbol in enumerate(_R_LAYER) if m % 2}
     powers = [sp.Rational(m + 3, 3) for m in range(1, int(3 * order) - 2)]
@@ -156,7 +157,7 @@ def neutral_Re() -> sp.Expr:
 
 
 @cache
-def small_Re(order=1) -> Expansion:
+def small_Re(order: Any = 1) -> Expansion:
     """Unbounded fluid, Re -> 0 with k = kappa sqrt(Re): sigma = Re (i a kappa R(kappa, 1, oo) - B kappa^2) + ...
 
     There R is of the order of k, so the bed answers to it and to its own slope at the same order.
@@ -169,7 +170,7 @@ def small_Re(order=1) -> Expansion:
                      wavenumber=kappa * sp.sqrt(fluid.Re))
 
 
-def small_Re_maximum(shields, mu1, digits: int = 15):
+def small_Re_maximum(shields: float, mu1: float, digits: int = 15) -> Any:
     """kappa of the fastest growth as Re -> 0, where k_max ~ kappa sqrt(Re) (an mpmath number).
 
     It maximises F(kappa) - (B/a) kappa^2, F = -kappa Im R(kappa, 1, oo), so it depends on shields and mu1 only:
@@ -185,7 +186,7 @@ def small_Re_maximum(shields, mu1, digits: int = 15):
     values = {names["shields"]: sp.Rational(str(shields)), names["mu1"]: sp.Rational(str(mu1))}
     ratio = sp.cancel(bed_damping() * b / (leading_flux() * b)).subs(values).evalf(digits + 10)
 
-    def slope(log_kappa):
+    def slope(log_kappa: Any) -> Any:
         kappa = mp.exp(log_kappa)
         growth = mp.diff(lambda q: -q * fluid.response(q, 1, digits=digits + exact).imag, kappa)
         return growth / (2 * kappa) - mp.mpf(ratio)
@@ -203,7 +204,7 @@ def small_Re_maximum(shields, mu1, digits: int = 15):
 
 
 @cache
-def near_yield(order=2) -> Expansion:
+def near_yield(order: Any = 2) -> Expansion:
     """shields = 1 + delta, delta -> 0 at fixed k: sigma = i k R(k, Re, depth) delta^2/(2 b) + ..."""
     coefficient = sp.I * wavenumber * fluid.WallResponse(wavenumber, fluid.Re, fluid.depth) / (2 * b)
     return Expansion("dune", "near-yield", {sp.Integer(2): coefficient}, sp.Integer(3),
@@ -217,7 +218,7 @@ def saturating_flux() -> sp.Expr:
 
 
 @cache
-def saturating(order="4/3") -> Expansion:
+def saturating(order: Any = "4/3") -> Expansion:
     """Saturating friction, unbounded fluid, k^2 << Re: the bed in equilibrium with (4.71), as in (4.81).
 
     >>> law = saturating().with_parameters(shields="7/5", mu1="2/5", mu2="3/5", I0="3/10", Re=10)
@@ -230,14 +231,14 @@ def saturating(order="4/3") -> Expansion:
 
 
 @cache
-def saturating_shallow(order=1) -> Expansion:
+def saturating_shallow(order: Any = 1) -> Expansion:
     """Saturating friction, fluid under a lid, k depth << 1: as (4.84)."""
     coefficient = saturating_flux() * fluid.shallow_coefficient(0) * sp.I
     return Expansion("dune", "saturating-shallow", {sp.Integer(1): coefficient}, sp.Integer(2),
                      dict.fromkeys((*_SATURATING, "depth")))
 
 
-def _named(coefficient: sp.Expr, response) -> sp.Expr:
+def _named(coefficient: sp.Expr, response: dict[Any, Any]) -> sp.Expr:
     """Write r and the logarithms with shields, factor by factor, and put the response's coefficients in."""
     numerator, denominator = sp.fraction(coefficient)
     letters = sorted({*_LOGS, *_R_LAYER[1::2], *_R_SHALLOW, b, mu1}, key=str)
@@ -249,16 +250,16 @@ def _named(coefficient: sp.Expr, response) -> sp.Expr:
     return total.subs(r, sp.sqrt(shields))
 
 
-def _needs_depth(values) -> str:
+def _needs_depth(values: Any) -> str:
     return "regime shallow needs a finite depth, e.g. --depth 10" if values.get("depth") == sp.oo else ""
 
 
-def _unbounded(values) -> str:
+def _unbounded(values: Any) -> str:
     depth = values.get("depth", sp.oo)
     return "" if depth == sp.oo else f"depth must be inf here, got {depth}: with a lid use --regime shallow"
 
 
-def _saturates(values) -> str:
+def _saturates(values: Any) -> str:
     """Why there is no such bed under the saturating law."""
     ratio = values["mu2"] / values["mu1"] if {"mu1", "mu2"} <= set(values) else sp.oo
     beyond = f"shields must be less than mu2/mu1 = {ratio}, got {values.get('shields')}: friction cannot exceed mu2"

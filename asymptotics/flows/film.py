@@ -6,6 +6,7 @@ We = surface tension/(density * surface speed^2 * depth).
 """
 
 from functools import cache
+from typing import Any
 
 import sympy as sp
 
@@ -61,7 +62,7 @@ def hierarchy() -> Hierarchy:
 
 
 @cache
-def long_wave_law(order=4) -> Expansion:
+def long_wave_law(order: Any = 4) -> Expansion:
     """sigma = -2 i k + (8/15) (Re - (5/4) cot slope) k^2 + ...
 
     >>> long_wave_law(2).with_parameters(Re=1, slope_deg=45).coefficient(2)

@@ -5,6 +5,7 @@ that mu(I) = tan(slope) everywhere, U' = I sqrt(H - z), U(0) = 0.
 """
 
 from functools import cache
+from typing import Any
 
 import sympy as sp
 
@@ -30,7 +31,7 @@ slope_deg = sp.Symbol("slope_deg", positive=True)
 
 
 @cache
-def flux(order="9/2") -> Expansion:
+def flux(order: Any = "9/2") -> Expansion:
     """Q = (2/5) I(tan slope) H^(5/2) exactly, (2.47): the next orders vanish.
 
     >>> flux().with_parameters(mu1="1/2", mu2=2, I0=3, slope_deg=45).coefficient("5/2")

@@ -5,6 +5,7 @@ that mu(I) (1 - Z) = mu1 (1 + delta), U' = I sqrt(1 - Z), and U = 0 at Z = -delt
 """
 
 from functools import cache
+from typing import Any
 
 import sympy as sp
 
@@ -21,7 +22,7 @@ DEFAULTS, LATEX = USUAL, PRINTED
 
 
 @cache
-def plate_velocity(order=4) -> Expansion:
+def plate_velocity(order: Any = 4) -> Expansion:
     """U(0) = I0 delta^2 / (2 (lambda - 1)) + ..., lambda = mu2/mu1: (2.38) and the next orders.
 
     >>> plate_velocity(2).with_parameters(mu1="2/5", mu2="16/25", I0=1).coefficient(2)

@@ -5,7 +5,9 @@ the mean speed is F = (2/5) sqrt(Fr2). Of the friction law only t = tan(slope), 
 e0 = (mu2 - t)(t - mu1)/(mu2 - mu1), its slope I mu'(I) there (4.16), have an effect.
 """
 
+from collections.abc import Mapping
 from functools import cache
+from typing import Any
 
 import sympy as sp
 
@@ -68,7 +70,7 @@ def hierarchy() -> Hierarchy:
 
 
 @cache
-def long_wave_law(order=4) -> Expansion:
+def long_wave_law(order: Any = 4) -> Expansion:
     """sigma = -i k + ([Fr2/10 - 2/5 + (3/5) t^2]/e0 - (3/10) t) k^2 + ...
 
     >>> long_wave_law(2).with_parameters(slope_deg=45, Fr2=2, mu1="1/2", mu2="3/2").coefficient(2)
@@ -103,7 +105,7 @@ def _named(coefficient: sp.Expr) -> sp.Expr:
     return sp.factor(coefficient).subs(e0, _E0).subs(tan_slope, slope)
 
 
-def _between(values) -> str:
+def _between(values: Mapping[Any, Any]) -> str:
     """A steady flow needs mu1 < tan(slope) < mu2."""
     low, high = values.get("mu1", sp.Integer(0)), values.get("mu2", sp.oo)
     if not low < high:

@@ -7,6 +7,7 @@ which moves at n/(m+n).
 """
 
 from functools import cache
+from typing import Any
 
 import sympy as sp
 
@@ -82,12 +83,12 @@ def shared(name: str) -> tuple[sp.Expr, ...]:
 
 
 @cache
-def hierarchy(**values) -> Hierarchy:
+def hierarchy(**values: Any) -> Hierarchy:
     """Orders in kappa = i k; fields are polynomials in z. Parameters given as numbers make the orders cheap."""
     known = _in_units(values)
     both = {name: Layer(name, z, matrix(name).subs(known)) for name in SHEARS}
 
-    def edge(name, height, condition):
+    def edge(name: str, height: Any, condition: Any) -> Any:
         return both[name].at(sp.sympify(height).subs(known), long_wave(condition.subs(known), _SCALE))
 
     upper, lower = ([edge(name, 0, value) for value in shared(name)] for name in ("upper", "lower"))
@@ -97,7 +98,7 @@ def hierarchy(**values) -> Hierarchy:
     return Hierarchy(list(both.values()), conditions)
 
 
-def _in_units(values) -> dict[sp.Symbol, sp.Expr]:
+def _in_units(values: dict[Any, Any]) -> dict[sp.Symbol, sp.Expr]:
     """The ratios given, and of the other parameters given those whose units are numbers then."""
     given = {symbol: values[symbol.name] for symbol in SYMBOLS if symbol.name in values}
     scaled = {symbol: _UNITS.get(symbol, symbol).subs(given) for symbol in given}
@@ -105,7 +106,7 @@ def _in_units(values) -> dict[sp.Symbol, sp.Expr]:
 
 
 @cache
-def long_wave_law(order=2, **values) -> Expansion:
+def long_wave_law(order: Any = 2, **values: Any) -> Expansion:
     """sigma = -i k (n/(m+n) + c0) + k^2 (...), with c0 of Yih (1967); surface tension enters with k^4.
 
     >>> long_wave_law(1).with_parameters(viscosity_ratio=2, depth_ratio=1).phase_speed
@@ -122,7 +123,7 @@ def long_wave_law(order=2, **values) -> Expansion:
     return Expansion("two_layer_couette", "long-wave", terms, powers[-1] + 1, parameters)
 
 
-def _speed(order: int, values) -> sp.Expr:
+def _speed(order: int, values: dict[Any, Any]) -> sp.Expr:
     """Coefficient of the speed, in the scales of the flow and with the lower plate at rest."""
     relative = hierarchy(**values).speed(order).subs(_UNITS, simultaneous=True) / (m + n)
     speed = relative - n / (m + n) if order == 0 else relative

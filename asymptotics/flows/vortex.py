@@ -5,6 +5,7 @@ Fr2 is the thesis's (4.6). sigma does not depend on the friction law, only on th
 """
 
 from functools import cache
+from typing import Any
 
 import sympy as sp
 
@@ -41,7 +42,7 @@ def friction(number: sp.Expr) -> sp.Expr:
 
 
 @cache
-def linear_flow(pressure=NONE) -> Linearisation:
+def linear_flow(pressure: Any = NONE) -> Linearisation:
     """Waves across the flow under the base state (4.10), or (4.26)-(4.27) with a pressure on the surface."""
     depth = 1 + pressure
     return Linearisation(
@@ -54,14 +55,14 @@ def linear_flow(pressure=NONE) -> Linearisation:
     )
 
 
-def surface_conditions(pressure=NONE) -> list[sp.Expr]:
+def surface_conditions(pressure: Any = NONE) -> list[sp.Expr]:
     """No stress but the pressure, along y and z, and the kinematic condition, on the displaced surface."""
     flow = linear_flow(pressure)
     traction = flow.traction()
     return [traction[1] - pressure * sp.diff(flow.surface, y), traction[2] + pressure, flow.kinematic]
 
 
-def hierarchy(pressure, top: sp.Expr, bottom: sp.Expr) -> Hierarchy:
+def hierarchy(pressure: Any, top: sp.Expr, bottom: sp.Expr) -> Hierarchy:
     """Orders in kappa = i k; fields are polynomials in zeta = sqrt(1 + pressure - z), from `top` to `bottom`."""
     flow, height = linear_flow(pressure), bottom**2 - zeta**2
     layer = Layer("grains", zeta, long_wave(flow.system(1 + pressure - zeta**2)).subs(pressure, top**2)
@@ -83,19 +84,20 @@ def _loaded_surface() -> Hierarchy:
 
 
 @cache
-def long_wave_law(order=6) -> Expansion:
+def long_wave_law(order: Any = 6) -> Expansion:
     """sigma = -2 k^2/(5 tan slope) + ... (4.25), in even powers of k."""
     return _even_expansion("long-wave", _free_surface(), order, {"slope_deg": None, "Fr2": None}, {})
 
 
 @cache
-def loaded_law(order=2) -> Expansion:
+def loaded_law(order: Any = 2) -> Expansion:
     """The same with pressure delta on the surface (4.26)-(4.30)."""
     roots = dict(zip(_ROOTS, (sp.sqrt(delta), sp.sqrt(1 + delta)), strict=True))
     return _even_expansion("delta", _loaded_surface(), order, {"slope_deg": None, "Fr2": None, "delta": None}, roots)
 
 
-def _even_expansion(regime, hierarchy, order, parameters, names) -> Expansion:
+def _even_expansion(regime: str, hierarchy: Hierarchy, order: Any, parameters: dict[str, None],
+                    names: dict[Any, Any]) -> Expansion:
     slope = {tan_slope: sp.tan(sp.pi * sp.Symbol("slope_deg", positive=True) / 180)}
     powers = [sp.Integer(power) for power in range(2, int(order) + 1, 2)]
     terms = {power: sp.factor(hierarchy.speed(power - 1) * power_of_i(power)).subs(names).subs(slope)

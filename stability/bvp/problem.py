@@ -8,7 +8,7 @@ regular in the flow's own map.
 
 from dataclasses import dataclass
 from types import SimpleNamespace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.polynomial import chebyshev as C
@@ -17,8 +17,15 @@ from scipy.integrate import solve_bvp
 from ..equations.layer import FIELDS, residuals, resolved
 from ..errors import ParameterError
 
+if TYPE_CHECKING:
+    from ..equations.layer import Layer, Profile
+    from ..flows.base import Flow
+    from ..numerics.smooth import Fit
+
 _NODES = 20_000
 _SHEAR_STRESS = 2  # index of t(0) among the edge values
+_NOTHING = 1e-10  # a coefficient of the singular term that is rounding
+_KEPT = 5  # meshes whose matrices are kept: those of one call of solve_bvp
 _INSIDE = np.array([0.2, 0.7])
 
 
@@ -31,7 +38,7 @@ class Problem:
     the amplitudes of other surfaces.
     """
 
-    def __init__(self, flow, k, pivot=_SHEAR_STRESS):
+    def __init__(self, flow: "Flow", k: float, pivot: int = _SHEAR_STRESS) -> None:
         self.flow, self.k, self.pivot = flow, float(k), pivot
         self.width = k ** (1 + flow.order)
         self.functions = {name: value[0][0] for name, value in flow.evaluate(np.array([self.k])).items()}
@@ -43,11 +50,11 @@ class Problem:
         self.real = not any(np.any(part.imag) for part in (*self.conditions, self.singular, self._evaluate(_INSIDE)))
         self._seen = {}
 
-    def _names(self, rate, surfaces):
+    def _names(self, rate: float, surfaces: Any) -> Any:
         return SimpleNamespace(k=self.k, rate=rate, **self.functions,
                                **dict(zip(self.flow.surfaces, surfaces, strict=False)))
 
-    def _regular(self, index, s):
+    def _regular(self, index: int, s: np.ndarray) -> np.ndarray:
         """M0 and M1 of a layer at the points s, (2, 4, 4, points); their limits where an edge gives 0/0."""
         layer = self.layers[index]
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -57,16 +64,16 @@ class Problem:
             matrices[..., open_] = self._series(index, 0).at(s[open_]).reshape(2, 4, 4, -1)
         return matrices
 
-    def _series(self, index, power):
+    def _series(self, index: int, power: int) -> "Fit":
         """Series of the entries of M0 and M1 of a layer times this power of s."""
         layer = self.layers[index]
         return resolved(self.flow, self.layers, index, together=True, coefficients=lambda base, s:
                         (s**power * self._layer(layer, base, s)).reshape(-1, len(s)))
 
-    def _layer(self, layer, base, s):
+    def _layer(self, layer: "Layer", base: "Profile", s: np.ndarray) -> np.ndarray:
         zero, unit = np.zeros(4), np.eye(4)
 
-        def residual(rate, fields, slopes):
+        def residual(rate: float, fields: np.ndarray, slopes: np.ndarray) -> np.ndarray:
             found = residuals(base, self.k, 0.0 if layer.steady else rate, fields, slopes, self.flow.order)
             return np.array([np.broadcast_to(part, s.shape) for part in found], complex)
 
@@ -74,7 +81,7 @@ class Problem:
         constant, total = (-np.array([residual(rate, unit[j], zero) for j in range(4)]) for rate in (0.0, 1.0))
         return np.array([constant, total - constant]).swapaxes(1, 2) / leading[:, None]
 
-    def _split(self, index):
+    def _split(self, index: Any) -> Any:
         """Series of a layer whose shear-rate equation is singular at s = 0, less S / s; S is stored."""
         layer, fit = self.layers[index], self._series(index, 1)
         series = np.zeros((fit.length, len(fit.series)), complex)
@@ -84,16 +91,16 @@ class Problem:
         start = len(FIELDS) * index
         block = slice(start, start + len(FIELDS))
         self.singular[block, block] = at_edge.reshape(2, 4, 4)[0]
-        if layer.singular > 1 or np.max(np.abs(at_edge.reshape(2, 4, 4)[1])) > 1e-10:
+        if layer.singular > 1 or np.max(np.abs(at_edge.reshape(2, 4, 4)[1])) > _NOTHING:
             raise ParameterError(f"{self.flow.name}: solve_bvp takes one singular edge, at s = 0 of a layer")
         series[0] -= at_edge
         quotients = [C.chebdiv(column, [0.5, 0.5])[0] for column in series.T]
         remainder = np.zeros((max(map(len, quotients)), len(quotients)), complex)
-        for column, quotient in enumerate(quotients):
-            remainder[:len(quotient), column] = quotient
+        for place, quotient in enumerate(quotients):
+            remainder[:len(quotient), place] = quotient
         return remainder
 
-    def _evaluate(self, s):
+    def _evaluate(self, s: np.ndarray) -> np.ndarray:
         matrices = np.zeros((2, self.size, self.size, len(s)), complex)
         for i in range(len(self.layers)):
             block = slice(4 * i, 4 * i + 4)
@@ -103,19 +110,19 @@ class Problem:
                 matrices[:, block, block] = self._regular(i, s)
         return matrices
 
-    def matrices(self, s):
+    def matrices(self, s: np.ndarray) -> np.ndarray:
         """M0 and M1 without the singular term, (2, size, size, points); kept for the meshes of this solve."""
         key = s.tobytes()
         if key not in self._seen:
-            self._seen = dict(list(self._seen.items())[-5:]) | {key: self._evaluate(s)}
+            self._seen = dict(list(self._seen.items())[-_KEPT:]) | {key: self._evaluate(s)}
         return self._seen[key]
 
-    def _conditions(self):
+    def _conditions(self) -> tuple[np.ndarray, ...]:
         """C0 and C1 of the conditions (C0 + rate C1) (y(0), y(1), surfaces) = 0, and of regularity."""
         n, surfaces = self.size, len(self.flow.surfaces)
         names = [layer.name for layer in self.layers]
 
-        def probe(rate, values):
+        def probe(rate: float, values: np.ndarray) -> tuple[Any, ...]:
             lower, upper = values[:n].reshape(-1, 4), values[n: 2 * n].reshape(-1, 4)
             edges = {name: tuple(SimpleNamespace(**dict(zip(FIELDS, edge[i], strict=True))) for edge in (lower, upper))
                      for i, name in enumerate(names)}
@@ -140,14 +147,15 @@ class Solution:
     residuals: np.ndarray
 
     @property
-    def rate(self):
+    def rate(self) -> complex:
         return self.parameters[0]
 
-    def fields(self, s):
+    def fields(self, s: Any) -> Any:
         return _join(self.spline(s), self.problem.real)
 
 
-def solve(problem, mesh, fields, parameters, residual, frozen=False, nodes=_NODES):
+def solve(problem: Any, mesh: Any, fields: Any, parameters: Any, residual: Any, frozen: Any = False,
+          nodes: Any = _NODES) -> Any:
     """Solve for fields and parameters from a guess (complex, fields (size, nodes)); None where solve_bvp fails.
 
     With `frozen` the rate stays as given, and one condition is left out: the kinematic one, or the
@@ -168,7 +176,7 @@ def solve(problem, mesh, fields, parameters, residual, frozen=False, nodes=_NODE
 class _Split:
     """The functions that solve_bvp calls, in real and imaginary parts."""
 
-    def __init__(self, problem, parameters, frozen):
+    def __init__(self, problem: "Problem", parameters: np.ndarray, frozen: bool) -> None:
         self.problem, self.frozen, self.rate = problem, frozen, parameters[0]
         self.singular = _block(problem.singular, problem.real) if np.any(problem.singular) else None
         constant, linear = problem.conditions
@@ -178,19 +186,19 @@ class _Split:
             rows = np.delete(rows, moving[0] if len(moving) and problem.flow.surfaces else len(rows) - 1)
         self.constant, self.linear = constant[rows], linear[rows]
 
-    def _values(self, p):
+    def _values(self, p: Any) -> tuple[Any, ...]:
         """The rate and the amplitudes of all surfaces."""
         p = _join(np.asarray(p), self.problem.real)
         rate, others = (self.rate, p) if self.frozen else (p[0], p[1:])
         return rate, np.concatenate(([1.0], others)) if self.problem.flow.surfaces else np.zeros(0)
 
-    def slopes(self, x, y, p=()):
+    def slopes(self, x: np.ndarray, y: np.ndarray, p: Any = ()) -> np.ndarray:
         constant, linear = self.problem.matrices(x)
         rate, _ = self._values(p)
         fields = _join(y, self.problem.real)
         return _part(np.einsum("ijm,jm->im", constant + rate * linear, fields), self.problem.real)
 
-    def slopes_jacobian(self, x, y, p=()):
+    def slopes_jacobian(self, x: np.ndarray, y: np.ndarray, p: Any = ()) -> Any:
         real = self.problem.real
         constant, linear = self.problem.matrices(x)
         rate, surfaces = self._values(p)
@@ -203,7 +211,7 @@ class _Split:
             by_p[:, _columns(0, len(p), real)] = _block(by_rate[:, None], real)
         return by_fields, by_p
 
-    def conditions(self, ya, yb, p=()):
+    def conditions(self, ya: np.ndarray, yb: np.ndarray, p: Any = ()) -> np.ndarray:
         real = self.problem.real
         rate, surfaces = self._values(p)
         values = np.concatenate((_join(ya, real), _join(yb, real), surfaces))
@@ -212,7 +220,7 @@ class _Split:
             left = np.append(left, values[self.problem.pivot] - 1)
         return _part(left, real)
 
-    def conditions_jacobian(self, ya, yb, p=()):
+    def conditions_jacobian(self, ya: np.ndarray, yb: np.ndarray, p: Any = ()) -> tuple[Any, ...]:
         real, n = self.problem.real, self.problem.size
         rate, surfaces = self._values(p)
         values = np.concatenate((_join(ya, real), _join(yb, real), surfaces))
@@ -228,17 +236,17 @@ class _Split:
         return *parts, _block(np.array(columns).T, real)
 
 
-def _join(values, real):
+def _join(values: np.ndarray, real: bool) -> np.ndarray:
     """Real and imaginary halves (2 size, ...) as complex (size, ...)."""
     half = len(values) // 2
     return values if real else values[:half] + 1j * values[half:]
 
 
-def _part(values, real):
+def _part(values: np.ndarray, real: bool) -> np.ndarray:
     return values.real if real else np.concatenate((values.real, values.imag))
 
 
-def _block(matrix, real):
+def _block(matrix: np.ndarray, real: bool) -> np.ndarray:
     """Complex matrices (rows, columns, ...) acting on real and imaginary halves."""
     if real:
         return matrix.real
@@ -246,5 +254,5 @@ def _block(matrix, real):
                            np.concatenate((matrix.imag, matrix.real), axis=1)))
 
 
-def _columns(index, count, real):
+def _columns(index: int, count: int, real: bool) -> list[int]:
     return [index] if real else [index, count // 2 + index]

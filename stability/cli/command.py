@@ -6,6 +6,7 @@ Exit status: 0 done and resolved; 2 bad usage or input; 3 computed, but unresolv
 import argparse
 import sys
 from importlib import import_module
+from typing import Any, NoReturn
 
 from .. import __version__
 from ..errors import ParameterError, StabilityError
@@ -13,7 +14,7 @@ from ..flows.sources import faults
 from .streams import drop_output, open_streams, say
 
 
-def main(argv=None):
+def main(argv: list[str] | None = None) -> int | None:
     """Run the command line; return the exit status."""
     open_streams()
     try:
@@ -33,7 +34,7 @@ def main(argv=None):
         return _fail("interrupted", 130)
 
 
-def _run(words):
+def _run(words: list[str]) -> int:
     parser = parser_of(words)
     try:
         arguments, unknown = parser.parse_known_args(words)
@@ -50,32 +51,32 @@ def _run(words):
     return arguments.run(arguments)
 
 
-def _unknown(text, hint):
+def _unknown(text: str, hint: str) -> ParameterError:
     kind = "option" if text.startswith("-") else "argument"
     return ParameterError(f"unknown {kind} {text!r}{hint}; see --help, and for parameters: stability flows FLOW")
 
 
-def _near(parser, words, option):
+def _near(parser: "_Parser", words: list[str], option: str) -> str:
     """A hint at the option of the verb that is meant, if one is near."""
     from .common import nearest_option
 
     return nearest_option(option, _options(parser, words))
 
 
-def _options(parser, words):
+def _options(parser: "_Parser", words: list[str]) -> list[str]:
     """The options of the verb that is asked for."""
     verbs = next(action.choices for action in parser._actions if isinstance(action, argparse._SubParsersAction))
     return list(verbs[words[0]]._option_string_actions) if words and words[0] in verbs else []
 
 
-def _strange(parser, words):
+def _strange(parser: Any, words: Any) -> Any:
     """Options that the verb has not."""
     known = _options(parser, words)
     return [text for text in words[1:] if known and text.startswith("--") and len(text) > 2
             and text.partition("=")[0] not in known]
 
 
-def _fail(reason, status):
+def _fail(reason: Any, status: Any) -> Any:
     say(f"stability: {reason}")
     return status
 
@@ -83,7 +84,7 @@ def _fail(reason, status):
 class _Parser(argparse.ArgumentParser):
     """Errors as exceptions; no value is given twice; examples in one line, to be copied."""
 
-    def __init__(self, **options):
+    def __init__(self, **options: Any) -> None:
         from .verbs.once import Once
 
         super().__init__(formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False, **options)
@@ -91,7 +92,7 @@ class _Parser(argparse.ArgumentParser):
             self.register("action", action, Once)
         self.set_defaults(given=frozenset())
 
-    def _check_value(self, action, value):
+    def _check_value(self, action: Any, value: str) -> None:
         if isinstance(action, argparse._SubParsersAction) and value not in action.choices:
             from ..flows.catalogue import nearest
 
@@ -99,15 +100,15 @@ class _Parser(argparse.ArgumentParser):
                                  f"{', '.join(action.choices)}")
         super()._check_value(action, value)
 
-    def error(self, message):
+    def error(self, message: str) -> NoReturn:
         raise ParameterError(f"{message} (see: {self.prog} --help)")
 
-    def exit(self, status=0, message=None):
+    def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
         sys.stdout.flush()  # of the help: where nobody reads it, say so in `main`
         super().exit(status, message)
 
 
-def parser_of(words):
+def parser_of(words: list[str]) -> "_Parser":
     """The parser of the verb that is named, with the parameters of the flow that is named; of other verbs the name."""
     from .verbs import VERBS
 

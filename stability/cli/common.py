@@ -2,9 +2,11 @@
 
 import argparse
 import os
+from collections.abc import Callable, Iterator
 from dataclasses import fields, replace
 from math import degrees
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from ..checks import as_number
 from ..errors import ParameterError
@@ -23,6 +25,10 @@ from .streams import output_closed, say, terminal_width
 from .verbs import VERBS
 from .verbs.once import NUMBER
 
+if TYPE_CHECKING:
+    from ..flows.base import Flow
+    from ..modes.accuracy import Accuracy
+
 SPEC = "a number, a list a,b,c, or a range a:b:n (log-spaced) or a:b:n:lin"
 INTERRUPTED_STATUS = 130  # of the command
 FORMS = {".csv": "csv", ".json": "json", ".nc": "netcdf"}  # that the ending of a file stands for
@@ -33,12 +39,12 @@ LAW = ("friction law: linear, saturating, regularised, power, or your own: path/
        "listed by: --law NAME --help")
 
 
-def add_verb(verbs, name, run, example, *options):
+def add_verb(verbs: Any, name: str, run: Callable[..., Any], example: str, *options: Callable[..., Any]) -> None:
     """Add a verb that takes a flow, its parameters, the common options and whatever `options` add."""
     add_bare_verb(verbs, name, run, example, *options, _output_options)
 
 
-def add_bare_verb(verbs, name, run, example, *options):
+def add_bare_verb(verbs: Any, name: str, run: Callable[..., Any], example: str, *options: Callable[..., Any]) -> None:
     """Add a verb that takes a flow, its parameters and `options`, and writes no result."""
     summary = VERBS[name]
     verb = verbs.add_parser(name, help=summary, description=summary[0].upper() + summary[1:] + ".",
@@ -52,7 +58,7 @@ def add_bare_verb(verbs, name, run, example, *options):
     verb.set_defaults(run=run, form="table", complete=_add_parameters)
 
 
-def _output_options(verb):
+def _output_options(verb: Any) -> None:
     form = verb.add_mutually_exclusive_group()
     form.add_argument("--csv", dest="form", action="store_const", const="csv", help="comma-separated values")
     form.add_argument("--json", dest="form", action="store_const", const="json", help="JSON")
@@ -61,7 +67,7 @@ def _output_options(verb):
     plot_options(verb)
 
 
-def _add_parameters(verb, words):
+def _add_parameters(verb: Any, words: list[str]) -> None:
     """Add a flag for every parameter of the flow that the words name."""
     name = _flow_named(verb, words)
     if name is None:
@@ -78,7 +84,7 @@ def _add_parameters(verb, words):
                                help=text if spelling == flag(item) else argparse.SUPPRESS)
 
 
-def _flow_named(verb, words):
+def _flow_named(verb: Any, words: list[str]) -> str | None:
     """The first of the words that is no option and no value of one; an option that is unknown yet takes a value."""
     value_follows = False
     for word in words:
@@ -93,11 +99,11 @@ def _flow_named(verb, words):
     return None
 
 
-def _metavar(item):
+def _metavar(item: Any) -> str:
     return NUMBER if numeric(item) else "FILE" if "table" in item.metadata else "NAME"
 
 
-def _law_named(words):
+def _law_named(words: list[str]) -> str | None:
     """The friction law that the words name, or None; an abbreviated or missing value is left to the parser."""
     for word, following in zip(words, [*words[1:], None], strict=True):
         if word == "--law" or word.startswith("--law="):
@@ -105,7 +111,7 @@ def _law_named(words):
     return None
 
 
-def _class_of(name, law):
+def _class_of(name: str, law: str | None) -> Any:
     """The class of flows with this name, under the friction law if one is named."""
     flow = find(name)
     if law is None or not hasattr(flow, "under"):
@@ -115,12 +121,12 @@ def _class_of(name, law):
     return flow.under(find_law(law))
 
 
-def flag(item):
+def flag(item: Any) -> str:
     """Command-line flag of a parameter."""
     return flag_of(item.name)
 
 
-def nearest_flag(arguments, unknown):
+def nearest_flag(arguments: argparse.Namespace, unknown: Any) -> Any:
     """A hint at the parameter that an unknown option may stand for."""
     if not getattr(arguments, "flow", None):
         return ""
@@ -129,25 +135,25 @@ def nearest_flag(arguments, unknown):
     return nearest(unknown.partition("=")[0], flags) or f"; {flow.name} has {', '.join(flags) or 'no parameters'}"
 
 
-def nearest_option(unknown, known):
+def nearest_option(unknown: str, known: list[str]) -> str:
     """A hint at the option of a verb that an unknown one may stand for, in the other case of letters first."""
     name = unknown.partition("=")[0]
     same = [option for option in known if option.lower() == name.lower()]
     return nearest(same[0], same) if same else nearest(name, known)
 
 
-def k_option(verb):
+def k_option(verb: Any) -> None:
     verb.add_argument("--k", required=True, metavar="SPEC", help=f"wavenumbers: {SPEC}")
 
 
-def accuracy_options(verb):
+def accuracy_options(verb: Any) -> None:
     """Options of the verbs that compute with `options_of`."""
     verb.add_argument("--tolerance", metavar="T", default=str(TOLERANCE),
                       help="relative error of sigma accepted as resolved")
     verb.add_argument("--max-degree", metavar="N", default=str(DEGREES[-1]), help="largest Chebyshev degree tried")
 
 
-def flow_of(arguments):
+def flow_of(arguments: argparse.Namespace) -> "Flow":
     """The flow with the parameters given as flags."""
     given = {key.partition(" ")[2]: value for key, value in vars(arguments).items()
              if key.startswith("parameter ") and value is not None}
@@ -155,7 +161,7 @@ def flow_of(arguments):
     return check_flow(flow)
 
 
-def sweep_of(arguments, flow):
+def sweep_of(arguments: argparse.Namespace, flow: "Flow") -> tuple[Any, ...]:
     """The swept parameter's name (or None) and the flows of the sweep."""
     if arguments.over is None:
         return None, [flow]
@@ -163,7 +169,7 @@ def sweep_of(arguments, flow):
     return name, [replace(flow, **{name: value}) for value in values]
 
 
-def swept_values(text, flow, option="--over"):
+def swept_values(text: str, flow: "Flow", option: str = "--over") -> tuple[str, list[float]]:
     """The parameter and its values of NAME=SPEC."""
     name, _, spec = text.partition("=")
     name = name.replace("-", "_")
@@ -175,17 +181,17 @@ def swept_values(text, flow, option="--over"):
     return name, parse_spec(spec, f"{option} {name}", False, item.metadata["unbounded"]).tolist()
 
 
-def accuracy_of(arguments):
+def accuracy_of(arguments: argparse.Namespace) -> "Accuracy":
     """The accuracy asked for by `accuracy_options`."""
     return check_accuracy(arguments.tolerance, arguments.max_degree, ("--tolerance", "--max-degree"))
 
 
-def options_of(arguments):
+def options_of(arguments: argparse.Namespace) -> dict[str, Any]:
     """The same as keyword arguments."""
     return accuracy_of(arguments).settings
 
 
-def report(arguments, compute):
+def report(arguments: argparse.Namespace, compute: Callable[..., Any]) -> int:
     """Check where output goes, compute a Record, write it; return the exit status."""
     form = check_files(arguments)
     result = compute()
@@ -221,7 +227,7 @@ def report(arguments, compute):
     return INTERRUPTED_STATUS if missing else 3 if failed else 0
 
 
-def _radians(arguments):
+def _radians(arguments: argparse.Namespace) -> Iterator[Any]:
     """A hint where an angle in degrees is so small that it may have been meant in radians."""
     given = {key.partition(" ")[2]: value for key, value in vars(arguments).items()
              if key.startswith("parameter ") and value is not None}
@@ -232,7 +238,7 @@ def _radians(arguments):
                    f"{flag_of(name)} {degrees(value):.6g}")
 
 
-def check_files(arguments):
+def check_files(arguments: argparse.Namespace) -> str:
     """Before the work, not after it: can its results be written? Return in which form."""
     if arguments.output is not None:
         check_writable(arguments.output, "-o")
@@ -248,7 +254,7 @@ def check_files(arguments):
     return form_of(arguments)
 
 
-def form_of(arguments):
+def form_of(arguments: argparse.Namespace) -> str:
     """The form asked for, or the one that the ending of the file stands for."""
     ending = Path(arguments.output or "").suffix.lower()
     if ending not in (*FORMS, *_TEXT):
@@ -261,7 +267,7 @@ def form_of(arguments):
     return form
 
 
-def _deliver(output, content):
+def _deliver(output: str | None, content: bytes) -> None:
     """Write the result to the file of -o, or to standard output."""
     if output is None:
         write(content.decode(), None)
@@ -270,7 +276,8 @@ def _deliver(output, content):
         temporary.write_bytes(content)
 
 
-def collect(arguments, results, total, rest, size=lambda result: 1):
+def collect(arguments: argparse.Namespace, results: Any, total: int, rest: Callable[..., Any],
+            size: Callable[..., Any] = lambda result: 1) -> list[Any]:
     """Return the results of a sweep of `total` points as a list, `size` points each, with progress on the way.
 
     What is done is kept after Ctrl-C: `rest(points done)` then gives what stands for the others.

@@ -1,21 +1,27 @@
 """The option --each: the same question for several values of a parameter, as one table and one figure."""
 
-from collections.abc import Iterator
+import argparse
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 from ..errors import ParameterError
 from ..status import is_interrupted
 from .common import flow_of, report, swept_values
 
+if TYPE_CHECKING:
+    from ..flows.base import Flow
+    from ..studies.family import Family
+
 _MOST = 42  # curves that differ in colour or line style
 
 
-def each_option(verb):
+def each_option(verb: Any) -> None:
     verb.add_argument("--each", metavar="NAME=SPEC",
                       help="the same for each value of another parameter")
 
 
-def answer(arguments, question):
+def answer(arguments: argparse.Namespace, question: Callable[..., Any]) -> int:
     """Report the result of a verb, for one flow or for each of a family; return the exit status.
 
     `question(flow)` checks what is asked of a flow, and returns the function that computes its Record.
@@ -27,7 +33,7 @@ def answer(arguments, question):
     flows = [replace(flow, **{name: value}) for value in values]
     computations = [question(one) for one in flows]
 
-    def compute():
+    def compute() -> "Family":
         from ..studies.family import Family
 
         members = list(_members(computations))
@@ -36,7 +42,7 @@ def answer(arguments, question):
     return report(arguments, compute)
 
 
-def _values(arguments, flow):
+def _values(arguments: argparse.Namespace, flow: "Flow") -> tuple[str, list[float]]:
     """The parameter and its values; refused where they would have no effect, or be lost among themselves."""
     name, values = swept_values(arguments.each, flow, "--each")
     if getattr(arguments, f"parameter {name}", None) is not None:
@@ -53,7 +59,7 @@ def _values(arguments, flow):
     return name, values
 
 
-def _members(computations) -> Iterator:
+def _members(computations: list[Callable[..., Any]]) -> Iterator:
     """The results in turn, until Ctrl-C: what is done is kept."""
     done = 0
     try:

@@ -1,13 +1,19 @@
 """The options that choose how a surface mode is computed: collocation, or continuation by solve_bvp."""
 
+import argparse
+from typing import TYPE_CHECKING, Any
+
 from ..errors import ParameterError
 from .specs import parse_one
+
+if TYPE_CHECKING:
+    from ..flows.base import Flow
 
 METHODS = ("collocation", "bvp", "bvp-thesis")
 _UNUSED = {"collocation": set(), "bvp": {"max_degree"}, "bvp-thesis": {"tolerance", "max_degree"}}
 
 
-def method_options(verb):
+def method_options(verb: Any) -> None:
     verb.add_argument("--method", default=METHODS[0], metavar="METHOD",
                       help=f"{', '.join(METHODS)} (default {METHODS[0]}); bvp is continuation by scipy's solve_bvp, "
                            "bvp-thesis the setting of Cawthorn's thesis: residual 1e-3, vortex with --delta, "
@@ -16,7 +22,7 @@ def method_options(verb):
                       help="pressure on the free surface of vortex with bvp-thesis, default 0.01")
 
 
-def bvp_settings(bvp, options=None):
+def bvp_settings(bvp: Any, options: Any = None) -> Any:
     """What the method of `method_of` is told, for the header of its results; `options` are those of collocation."""
     if bvp is None:
         return options
@@ -26,7 +32,7 @@ def bvp_settings(bvp, options=None):
     return {"residual": bvp["residual"]} | ({} if delta is None else {"delta": delta})
 
 
-def method_of(arguments, flow, tolerance):
+def method_of(arguments: argparse.Namespace, flow: "Flow", tolerance: float) -> dict[str, Any] | None:
     """Arguments for `bvp.continuation`, or None for collocation."""
     if arguments.method not in METHODS:
         raise ParameterError(f"--method: must be one of {', '.join(METHODS)} (got {arguments.method!r})")

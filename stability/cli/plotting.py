@@ -1,11 +1,17 @@
 """The options that say how the figure of --plot is to look."""
 
+import argparse
+from typing import TYPE_CHECKING, Any
+
 from ..errors import ParameterError
+
+if TYPE_CHECKING:
+    from ..output.look import Look
 
 _DEPENDENT = "size", "style", "title", "log", "overlay", "panel"  # options that need --plot
 
 
-def plot_options(verb):
+def plot_options(verb: Any) -> None:
     """Options of every verb that draws."""
     group = verb.add_argument_group("figure")
     group.add_argument("--plot", metavar="FILE", help="draw the result: .png, .pdf or .svg")
@@ -18,7 +24,7 @@ def plot_options(verb):
                        help="points with errors, columns by name; repeatable")
 
 
-def look_of(arguments):
+def look_of(arguments: argparse.Namespace) -> "Look | None":
     """The `Look` that the options ask for, None without --plot; files are read once."""
     given = {name: getattr(arguments, name) for name in _DEPENDENT if getattr(arguments, name, None)}
     if arguments.plot is None:

@@ -1,6 +1,7 @@
 """Values given on the command line: a number, a list `a,b,c`, or a range `a:b:n` (log-spaced) or `a:b:n:lin`."""
 
 from math import inf, isfinite
+from typing import Any
 
 import numpy as np
 
@@ -10,7 +11,7 @@ _MOST = 100_000
 _LEAST = 1e-3  # start of the range that is proposed, relative to its end
 
 
-def parse_spec(text, name, positive=True, unbounded=False):
+def parse_spec(text: Any, name: Any, positive: Any = True, unbounded: Any = False) -> Any:
     """Return the values of a SPEC as a float array (count,); raise a ParameterError that names `name`.
 
     `unbounded` admits inf in a list.
@@ -22,7 +23,7 @@ def parse_spec(text, name, positive=True, unbounded=False):
     return values
 
 
-def parse_one(text, name, what="value"):
+def parse_one(text: str, name: str, what: str = "value") -> float:
     """Return a SPEC of a single positive number as a float; `what` names it in the message."""
     values = parse_spec(text, name)
     if len(values) != 1:
@@ -30,7 +31,7 @@ def parse_one(text, name, what="value"):
     return float(values[0])
 
 
-def _range(text, name, positive):
+def _range(text: str, name: str, positive: bool) -> np.ndarray:
     parts = text.split(":")
     linear = parts[3:] == ["lin"]
     if len(parts) != 3 and not linear:
@@ -53,7 +54,7 @@ def _range(text, name, positive):
     return np.geomspace(start, stop, count)
 
 
-def _number(text, name, unbounded=False):
+def _number(text: str, name: str, unbounded: bool = False) -> float:
     try:
         value = float(text)
     except ValueError:

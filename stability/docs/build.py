@@ -10,6 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from pkgutil import walk_packages
 from types import ModuleType
+from typing import Any
 
 from .. import __version__
 from .tables import columns_page, commands_page, figures, flows_page, gallery_page, modules_page
@@ -40,7 +41,7 @@ def main(words: list[str] | None = None) -> int:
     return 0
 
 
-def _fail(reason):
+def _fail(reason: Any) -> Any:
     print(f"stability.docs: {reason}", file=sys.stderr)
     return 1
 
@@ -80,7 +81,7 @@ def _names() -> Iterator[str]:
         yield from (package, *(name for name in names if not _LEFT_OUT.search(name)))
 
 
-def _texts(modules) -> dict[str, str]:
+def _texts(modules: Any) -> dict[str, str]:
     """{name: Markdown} of the pages that are no modules; `modules` are those of the reference."""
     written = {page.stem: page.read_text(encoding="utf-8") for page in sorted(PAGES.glob("*.md"))}
     return {**written, "flows": flows_page(), "columns": columns_page(), "commands": commands_page(),

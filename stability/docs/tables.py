@@ -3,6 +3,7 @@
 import ast
 from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 from ..cli.command import parser_of
 from ..cli.verbs import VERBS
@@ -25,7 +26,7 @@ def flows_page() -> str:
     return "\n".join(parts)
 
 
-def _searched(flow, item):
+def _searched(flow: Any, item: Any) -> Any:
     return "{:g} to {:g}".format(*span_of(flow, item.name)) if numeric(item) else "-"
 
 
@@ -45,19 +46,20 @@ def commands_page() -> str:
     parts = ["# Commands", "", "`stability VERB FLOW --help` adds the parameters of the flow."]
     for verb in VERBS:
         parser = parser_of([verb])
-        verbs = next(action.choices for action in parser._subparsers._group_actions)
+        group: Any = parser._subparsers
+        verbs: Any = next(action.choices for action in group._group_actions)
         parts += ["", f"## stability {verb}", "", "```text", verbs[verb].format_help().rstrip(), "```"]
     return "\n".join(parts)
 
 
-def modules_page(modules) -> str:
+def modules_page(modules: Any) -> str:
     """All modules of the reference, {name: pdoc's}, with the first line of their docstrings."""
     lines = [f"- [{name}]({name.replace('.', '/')}.html): {module.docstring.partition(chr(10))[0]}"
              for name, module in modules.items()]
     return "\n".join(["# Modules", "", *lines])
 
 
-def _row(*cells) -> str:
+def _row(*cells: Any) -> str:
     return f"| {' | '.join(str(cell).replace('|', chr(92) + '|') for cell in cells)} |"
 
 

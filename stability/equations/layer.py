@@ -159,7 +159,7 @@ class Layer:
             found[name] = one.series[0], float(one.cut[0]), float(np.abs(one.series[0]).max())
         return found
 
-    def _completed(self, base, s):
+    def _completed(self, base: "Profile", s: np.ndarray) -> "tuple[Profile, dict[Any, Any]]":
         """The profile with its slopes, and the uncertainty of those that had to be found, {name: (points,)}.
 
         What a series leaves out is noise: in the equations its slope acts like its last term would, without the steep
@@ -186,7 +186,7 @@ class Layer:
         """
         uncertain: dict[str, Any] = {}
 
-        def sample(s, off=None):
+        def sample(s: np.ndarray, off: Any = None) -> np.ndarray:
             base, bounds = (off, {}) if off else self._completed(self._checked(s), s)
             uncertain.update(bounds)
             with np.errstate(divide="ignore", invalid="ignore"):
@@ -204,7 +204,7 @@ class Layer:
             raise self._refusal(f"{name} not smooth", s, _SMOOTHEN) from None
         return self._widened(found, sample) if uncertain else found
 
-    def _widened(self, found, sample):
+    def _widened(self, found: Any, sample: Any) -> Any:
         """The fit, with what the uncertainty of slopes that had to be found adds to what it leaves out."""
         s = points(max(found.length, _HEIGHTS))
         base, uncertain = self._completed(self.profile(s), s)
@@ -214,7 +214,7 @@ class Layer:
             cut = cut + np.abs(sample(s, off) - sample(s, base)).max(axis=1)
         return replace(found, cut=cut)
 
-    def _checked(self, s):
+    def _checked(self, s: np.ndarray) -> "Profile":
         """The profile at the points s, all of whose values are numbers or have the shape of s, real and finite."""
         base = self.profile(s)
         for name in _NAMES:
@@ -228,13 +228,13 @@ class Layer:
                 self._check(name, number[None], s)
         return base
 
-    def _check(self, name, values, s):
+    def _check(self, name: str, values: np.ndarray, s: np.ndarray) -> None:
         """Raise NotSmooth where one of the values (functions, points) or (functions,) is not finite."""
         if not np.isfinite(values).all():
             where = tuple(np.argwhere(~np.isfinite(values))[0])
             raise self._refusal(f"{name} is {values[where]}", s[where[1]] if len(where) > 1 else None)
 
-    def _culprit(self, s):
+    def _culprit(self, s: Any) -> Any:
         """Which field of the profile does not end, in words, and where; of several that do not, the first."""
         for name in _NAMES:
             if isinstance(getattr(self.base(np.array([s])), name), Form):
@@ -245,7 +245,7 @@ class Layer:
                 return f"{name} is", rough.s
         return "the coefficients of the equations are", s
 
-    def _refusal(self, complaint, s=None, remedy=None):
+    def _refusal(self, complaint: Any, s: Any = None, remedy: Any = None) -> Any:
         height = None
         if s is not None:
             try:
@@ -258,7 +258,7 @@ class Layer:
 _NAMES = tuple(field.name for field in fields(Profile))
 
 
-def _unfit(name, value, s):
+def _unfit(name: Any, value: Any, s: Any) -> Any:
     """What is wrong with the type or the shape of a value of a profile."""
     if value.dtype.kind == "c":
         return f"{name} is complex"
@@ -267,12 +267,13 @@ def _unfit(name, value, s):
     return f"{name} has the shape {value.shape} at points of the shape {s.shape}"
 
 
-def numbers(flow):
+def numbers(flow: Any) -> Any:
     """Stand-ins for the symbols that a flow's layers may use: heights only, which C does not depend on."""
     return SimpleNamespace(k=1.0, rate=0.0, **dict.fromkeys((*flow.functions, *flow.surfaces), 1.0))
 
 
-def resolved(flow, layers, index, coefficients, together=False):
+def resolved(flow: Any, layers: tuple[Any, ...], index: int, coefficients: Callable[..., Any],
+             together: bool = False) -> Fit:
     """Return `Layer.resolved` of one of the layers of a flow; what it raises names the flow and a height in it."""
     try:
         return layers[index].resolved(coefficients, together)
@@ -281,7 +282,7 @@ def resolved(flow, layers, index, coefficients, together=False):
         raise reason.of(flow.name, bottom) from None
 
 
-def residuals(base, k, rate, fields, slopes, order):
+def residuals(base: Any, k: Any, rate: Any, fields: Any, slopes: Any, order: Any) -> Any:
     """Return the residuals of the four equations (shear rate, continuity, momentum along and across).
 
     `fields` and `slopes` are (v, w, t, n) and their s-derivatives; `order` is a of the scaling.

@@ -12,8 +12,10 @@ the matrices are banded. What has no row opposite (constants of integration, sur
 form the border.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,6 +23,10 @@ from ..numerics import chebyshev
 from ..numerics.bordered import Bordered, Factors, ManyFactors, Places
 from ..numerics.stack import Lines, Stack
 from .layer import FIELDS
+
+if TYPE_CHECKING:
+    from .system import Structure, System
+    from .table import Table
 
 _LAST = 4  # rows of an equation whose left vector bounds that of the tail: the last two alone feel the truncation
 
@@ -37,7 +43,7 @@ class Weights:
     spread: np.ndarray
 
 
-def weights_of(structure, symbols):
+def weights_of(structure: "Structure", symbols: dict[str, tuple[Any, ...]]) -> "Weights":
     """Return the `Weights` of the parts for symbols {name: (value, slope, error)}, numbers other than 0 or arrays."""
     value, slope, spread = np.array([symbols[name] for name in structure.symbols]).swapaxes(0, 1)
     exponents = structure.powers
@@ -55,7 +61,7 @@ class Layout:
     and `carrying`, which entries of the table those are.
     """
 
-    def __init__(self, table, degree):
+    def __init__(self, table: "Table", degree: int) -> None:
         self.table, self.structure, self.degree, self._common = table, table.structure, degree, {}
         columns, rows = self._place(table)
         reach = np.array([degree + row.extra + table.tail if number < table.structure.equations else 1
@@ -74,14 +80,14 @@ class Layout:
         self.rate_rows = np.unique(row[carries])
         self.entries = part[here], row[here], column[here]
 
-    def common(self, other):
+    def common(self, other: "Layout") -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
         """Which columns, and which rows, it has in common with another degree: for each, where here and where there."""
         if other.degree not in self._common:
             self._common[other.degree] = tuple(_common(*pair) for pair in
                                                ((self.columns, other.columns), (self.rows, other.rows)))
         return self._common[other.degree]
 
-    def _place(self, table):
+    def _place(self, table: "Table") -> tuple[np.ndarray, ...]:
         """Number unknowns and rows: interior interleaved layer by layer, then the border, then the tails.
 
         Returns the places of columns (unknowns, degree + 1) and of rows (equations and conditions, ...).
@@ -114,7 +120,7 @@ class Layout:
         return columns, rows
 
 
-def _common(one, other):
+def _common(one: dict[str, np.ndarray], other: dict[str, np.ndarray]) -> tuple[np.ndarray, ...]:
     """Places here and there of what two maps from names to index arrays have in common."""
     counts = {name: min(len(places), len(other[name])) for name, places in one.items()}
     return tuple(np.concatenate([side[name][:count] for name, count in counts.items()]) for side in (one, other))
@@ -128,7 +134,7 @@ class Pencil:
     that is rounding; `real` tells whether all matrices are real.
     """
 
-    def __init__(self, layout, values, system):
+    def __init__(self, layout: "Layout", values: np.ndarray, system: "System") -> None:
         self.layout, self._values = layout, values
         self.degree, self.parts, self.first_b = layout.degree, layout.structure.parts, layout.structure.first_b
         self.size, self.columns, self.rows, self.last = layout.size, layout.columns, layout.rows, layout.last
@@ -138,17 +144,17 @@ class Pencil:
         self.cuts = [(self.parts.index(monomial), unknown, self.rows[equation.name], bound)
                      for equation in system.equations for unknown, monomial, bound in equation.cuts]
 
-    def weights(self, symbols):
+    def weights(self, symbols: dict[str, tuple[Any, ...]]) -> "Weights":
         """Return the `Weights` for symbols {name: (value, slope, error)}, non-zero numbers or arrays (points,)."""
         return weights_of(self.layout.structure, symbols)
 
-    def powers(self, rate):
+    def powers(self, rate: Any) -> np.ndarray:
         """Factor of every part in the residual: 1 in A, the rate in B; (parts,) then the shape of rate."""
         powers = np.ones((len(self.parts), *np.shape(rate)), np.result_type(rate, float))
         powers[self.first_b:] = rate
         return powers
 
-    def cut(self, weights, y, x):
+    def cut(self, weights: Any, y: Any, x: Any) -> Any:
         """Bound on what series left out change y^T (A - rate B) x, (points,); `weights` (parts, points) of the parts.
 
         The T-coefficients of a residual are integrals over the angle: y^T times those of g is the mean of Y g with
@@ -163,35 +169,35 @@ class Pencil:
             total += bound * np.abs(weights[part]) * np.mean(self._sizes(adjoint) * self._sizes(series), axis=-1)
         return total
 
-    def _sizes(self, series):
+    def _sizes(self, series: Any) -> Any:
         """Moduli of T-series (terms, points) at Chebyshev points (last axis), twice as many as there are terms."""
         padded = np.zeros((*series.shape[1:], 2 * self.degree + 2), series.dtype)
         padded[..., :len(series)] = series.T
         return np.abs(chebyshev.values(padded))
 
     @cached_property
-    def tail(self):
+    def tail(self) -> Stack:
         return Stack(self.layout.tail, self._values[self.layout.beyond])
 
     @cached_property
-    def _b(self):
+    def _b(self) -> Stack:
         return Stack(self.layout.b, -self._values[self.layout.carrying])
 
-    def b_products(self, weights):
+    def b_products(self, weights: np.ndarray) -> tuple[Callable[..., Any], ...]:
         """Return the functions B x of x and y^T B of y, (size, points) or (size,), for weights (parts, points) or
         (parts,) of the parts."""
         return self._b.summed(weights)
 
-    def factors(self, weights, rate):
+    def factors(self, weights: np.ndarray, rate: Any) -> Any:
         """Return LU factors of A - rate B for weights (parts,) of the parts, or (parts, points) and rates (points,)."""
         kind = ManyFactors if np.ndim(rate) else Factors
         return kind(self._bordered, weights * self.powers(rate))
 
     @cached_property
-    def _bordered(self):
+    def _bordered(self) -> Bordered:
         return Bordered(self.layout.places, self._values[self.layout.inside])
 
-    def pair(self, weights):
+    def pair(self, weights: Any) -> Any:
         """Return A and B in full, each (size, size)."""
         part, row, column = self.layout.entries
         value = self._values[self.layout.inside] * weights.value[part]

@@ -4,9 +4,11 @@ Independent of any resolution. Terms are kept as (unknown, monomial, series): th
 multiplies the unknown (or its s-derivative, marked ') and a product of scalar symbols such as k^2 rate.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +17,10 @@ from ..errors import ConditionCount, ParameterError
 from .forms import Form, variable
 from .layer import FIELDS, residuals, resolved
 
+if TYPE_CHECKING:
+    from .layer import Layer, Profile
+
+_PROPORTIONAL = 1e-12  # relative difference of ratios that is rounding: two conditions that say the same
 _EQUATIONS = ("shear rate", "continuity", "momentum along", "momentum across")
 
 
@@ -55,27 +61,27 @@ class Structure:
     rows: tuple
 
     @cached_property
-    def parts(self):
+    def parts(self) -> tuple[Any, ...]:
         return tuple(sorted({monomial for row in self.rows for _, monomial, _ in row.terms},
                             key=lambda monomial: ("rate" in monomial, monomial)))
 
     @cached_property
-    def first_b(self):
+    def first_b(self) -> int:
         return sum("rate" not in part for part in self.parts)
 
     @cached_property
-    def symbols(self):
+    def symbols(self) -> tuple[Any, ...]:
         return tuple(sorted({name for part in self.parts for name in part} - {"rate"}))
 
     @cached_property
-    def powers(self):
+    def powers(self) -> np.ndarray:
         return np.array([[part.count(name) for name in self.symbols] for part in self.parts])
 
 
 class System:
     """All `equations` and `conditions` of a flow, with the names of its `unknowns` and `surfaces`."""
 
-    def __init__(self, flow):
+    def __init__(self, flow: Any) -> None:
         names = SimpleNamespace(k=variable("k"), rate=variable("rate"),
                                 **{name: variable(name) for name in (*flow.functions, *flow.surfaces)})
         layers = flow.layers(names)
@@ -91,12 +97,12 @@ class System:
         _check_count(flow, layers, len(self.conditions))
 
     @property
-    def pattern(self):
+    def pattern(self) -> tuple[Any, ...]:
         """Which unknowns and monomials meet in each equation and condition, whatever their coefficients: hashable."""
         return tuple((row.extra, tuple(term[:2] for term in row.terms)) for row in self.structure.rows)
 
     @cached_property
-    def structure(self):
+    def structure(self) -> "Structure":
         """The `Structure` of the equations."""
         rows = *((one.name, one.extra, one.terms) for one in self.equations), *(("", 0, one) for one in self.conditions)
         return Structure((*self.fields, *self.surfaces), len(self.fields), len(self.equations), self.longest, tuple(
@@ -105,29 +111,29 @@ class System:
             for name, extra, terms in rows))
 
     @property
-    def coefficients(self):
+    def coefficients(self) -> np.ndarray:
         """All Chebyshev coefficients that are not 0, term by term in the order of the structure."""
         rows = *(equation.terms for equation in self.equations), *self.conditions
         return np.concatenate([series[series != 0] for terms in rows for *_, series in terms])
 
-    def __eq__(self, other):
+    def __eq__(self, other: Any) -> Any:
         return _same(self.equations, other.equations) and _same(self.conditions, other.conditions)
 
     __hash__ = None  # type: ignore[assignment]
 
     @property
-    def longest(self):
+    def longest(self) -> int:
         """Terms of the longest series."""
         return max(len(series) for equation in self.equations for *_, series in equation.terms)
 
-    def _equations(self, flow, layers, index, names):
+    def _equations(self, flow: Any, layers: tuple[Any, ...], index: int, names: Any) -> Iterator[Any]:
         layer = layers[index]
         fields = [variable(f"{layer.name}.{field}") for field in FIELDS]
         slopes = [variable(f"{layer.name}.{field}'") for field in FIELDS]
         rate = 0.0 if layer.steady else names.rate
         keys = []
 
-        def coefficients(base, s):
+        def coefficients(base: "Profile", s: np.ndarray) -> list[Any]:
             forms = residuals(base, names.k, rate, fields, slopes, flow.order)
             keys[:] = [(equation, product) for equation, form in enumerate(forms) for product in form.terms]
             return [forms[equation].terms[product] for equation, product in keys]
@@ -142,11 +148,11 @@ class System:
                            layer.singular if name == "shear rate" else 0,
                            tuple((unknown, monomial, cut) for unknown, monomial, _, cut in here if cut))
 
-    def _terms(self, form):
+    def _terms(self, form: Form) -> tuple[Any, ...]:
         """Split every term of a condition into its one unknown, its monomial and its number as a series."""
         return tuple((*self._split(names), _series(number)) for names, number in form.terms.items() if number)
 
-    def _split(self, names):
+    def _split(self, names: tuple[Any, ...]) -> tuple[Any, ...]:
         """The one unknown among the names of a product, and the monomial of the others."""
         all_ = self.fields + self.surfaces
         unknowns = [name for name in names if name.rstrip("'").partition("@")[0] in all_]
@@ -156,7 +162,7 @@ class System:
         return unknowns[0], tuple(name for name in names if name != unknowns[0])
 
 
-def _same(one, other):
+def _same(one: Any, other: Any) -> bool:
     """Equality of nested tuples whose leaves may be arrays."""
     if isinstance(one, np.ndarray):
         return np.array_equal(one, other)
@@ -168,20 +174,20 @@ def _same(one, other):
     return one == other
 
 
-def _edge(layer, end):
+def _edge(layer: "Layer", end: int) -> Any:
     return SimpleNamespace(**{field: variable(f"{layer.name}.{field}@{end}") for field in FIELDS})
 
 
-def _support(series):
+def _support(series: np.ndarray) -> tuple[Any, ...]:
     return tuple(series.nonzero()[0].tolist())
 
 
-def _series(number):
+def _series(number: complex) -> np.ndarray:
     """A number as a series of one term; real if it is real."""
     return np.array([number if number.imag else number.real])
 
 
-def _check_conditions(flow, given):
+def _check_conditions(flow: Any, given: tuple[Any, ...]) -> None:
     """Conditions are different forms with finite coefficients; their numbers in messages count from 1."""
     if not isinstance(given, tuple | list):
         raise ParameterError(f"{flow.name}: conditions(edges, names) must return a tuple (got {shown(given)})")
@@ -198,15 +204,15 @@ def _check_conditions(flow, given):
                 raise ParameterError(f"{flow.name}: conditions {other} and {number} say the same")
 
 
-def _proportional(one, other):
+def _proportional(one: dict[tuple[Any, ...], Any], other: dict[tuple[Any, ...], Any]) -> bool:
     one, other = ({names: value for names, value in terms.items() if value} for terms in (one, other))
     if one.keys() != other.keys():
         return False
     ratios = [complex(other[names] / value) for names, value in one.items()]
-    return all(abs(ratio - ratios[0]) <= 1e-12 * abs(ratios[0]) for ratio in ratios)
+    return all(abs(ratio - ratios[0]) <= _PROPORTIONAL * abs(ratios[0]) for ratio in ratios)
 
 
-def _check_count(flow, layers, given):
+def _check_count(flow: Any, layers: tuple[Any, ...], given: int) -> None:
     """Each layer needs one condition per equation, less one per singular edge; each surface one more."""
     needed = sum(4 - layer.singular for layer in layers) + len(flow.surfaces)
     if given != needed:

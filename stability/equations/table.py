@@ -5,10 +5,15 @@ one table serves every degree below its own. Entries are linear in the coefficie
 flow with the same structure, too.
 """
 
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 from scipy.sparse import csr_array
 
 from ..numerics import chebyshev
+
+if TYPE_CHECKING:
+    from .system import Structure
 
 _TAIL = 8  # least number of coefficients kept beyond the truncation, per equation
 
@@ -22,7 +27,7 @@ class Table:
     products with the last unknowns would go unseen.
     """
 
-    def __init__(self, structure, degree):
+    def __init__(self, structure: "Structure", degree: int) -> None:
         self.structure, self.degree, self.tail = structure, degree, max(_TAIL, structure.longest)
         blocks, start = [], 0
         for number, row in enumerate(structure.rows):
@@ -38,7 +43,7 @@ class Table:
         used = weight != 0
         self._map = csr_array((weight[used], (entry[used], index[used])), (len(self.part), start))
 
-    def _equation(self, unknown, support):
+    def _equation(self, unknown: str, support: tuple[Any, ...]) -> tuple[Any, ...]:
         """Name, row, column, and which coefficients add with which weight to the entries of a term."""
         most = self.degree + self.tail + max(row.extra for row in self.structure.rows)
         row, column, index, weight = chebyshev.cells(support, unknown.endswith("'"), most, self.degree)
@@ -46,13 +51,13 @@ class Table:
         place[list(support)] = np.arange(len(support))
         return unknown.rstrip("'"), row, column, place[index], weight
 
-    def _condition(self, unknown, support):
+    def _condition(self, unknown: str, support: tuple[int]) -> tuple[Any, ...]:
         name, _, end = unknown.partition("@")
         value = chebyshev.at(float(end), self.degree)[0] if end else np.ones(1)
         few = np.zeros((chebyshev.FEW, len(value)))
         few[0] = value
         return name, np.zeros(len(value), int), np.arange(len(value)), np.zeros(few.shape, int), few
 
-    def values(self, coefficients):
+    def values(self, coefficients: Any) -> Any:
         """The entries of a system with these coefficients (those of `System.coefficients`), (entries,)."""
         return self._map @ coefficients

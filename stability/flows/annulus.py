@@ -9,6 +9,7 @@ Solved by iteration: friction from the last P, Omega and P by integrating inward
 have ended; where friction rises as another power of I than the first, they crowd at the yield radius.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, ClassVar
@@ -54,7 +55,7 @@ class Annulus(Steady):
     thickness: float = parameter(0.1, 0, look=(1e-3, 1.0), meaning="thickness Ry - 1 of the sheared layer: the torque")
     gamma: float = parameter(10.0, 0, look=(0.1, 1e3), meaning="sqrt(volume fraction) r0/d; thesis: Gamma_0 over I0")
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         super().__post_init__()
         if not self.law.rest > 0:
             raise ParameterError(f"{self.name}: law {self.law.name} has no yield stress to measure the torque by: give "
@@ -62,22 +63,22 @@ class Annulus(Steady):
         _ = self._solved
 
     @classmethod
-    def extras(cls, law):
+    def extras(cls, law: Any) -> Any:
         return creep_parameter(law, "outer cylinder", "inner one")
 
     @property
-    def _solved(self):
+    def _solved(self) -> "tuple[_Part]":
         return _solution(self.law, self.thickness, self.gamma, getattr(self, "creep", 0.0))
 
-    def layers(self, names):
+    def layers(self, names: Any) -> Any:
         self.base_only(names)
         return tuple(Layer("grains" if not number else f"grains_{number + 1}", self._profile(part))
                      for number, part in enumerate(self._solved))
 
-    def _profile(self, part):
+    def _profile(self, part: "_Part") -> Callable[..., Any]:
         law, gamma = self.law, self.gamma
 
-        def profile(s):
+        def profile(s: np.ndarray) -> Profile:
             P = C.chebval(2 * s - 1, part.pressure)
             R, inertial, stress = part.ring.at(law, s, P)
             rate = gamma * inertial * np.sqrt(P)
@@ -89,7 +90,7 @@ class Annulus(Steady):
 
         return profile
 
-    def state(self, layer, z, base):
+    def state(self, layer: str, z: np.ndarray, base: Profile) -> dict[str, np.ndarray]:
         part = self._solved[int(layer.partition("_")[2] or 1) - 1]
         s = part.ring.place(z)
         P = C.chebval(2 * s - 1, part.pressure)
@@ -98,11 +99,11 @@ class Annulus(Steady):
                 "angular_velocity": base.U / R}
 
     @property
-    def rotation(self):
+    def rotation(self) -> float:
         """Angular velocity of the cylinder."""
         return float(C.chebval(-1.0, self._solved[0].omega))
 
-    def remarks(self):
+    def remarks(self) -> list[str]:
         kind = "yield radius" if self.law.yields else "no yield stress: radius of the rigid outer cylinder"
         return [f"{kind} {self._solved[-1].ring.outer:.10g}",
                 f"angular velocity of the cylinder {self.rotation:.10g}",
@@ -121,10 +122,10 @@ class _Ring:
     fastest: float
     crowd: int = 1
 
-    def stretch(self, s):
+    def stretch(self, s: np.ndarray) -> np.ndarray:
         return (self.outer - self.inner) * self.crowd * (1 - s) ** (self.crowd - 1)
 
-    def place(self, R):
+    def place(self, R: np.ndarray) -> np.ndarray:
         return 1 - np.maximum((self.outer - R) / (self.outer - self.inner), 0) ** (1 / self.crowd)
 
     def at(self, law: Law, s: Any, P: Any) -> tuple[Any, Any, Any]:
@@ -147,13 +148,13 @@ class _Part:
     omega: Any
     pressure: Any
 
-    def ended(self):
+    def ended(self) -> bool:
         return all(np.abs(one[-len(one) // 4:]).max() <= _ENDED * np.abs(one).max()
                    for one in (self.omega, self.pressure))
 
 
 @lru_cache(maxsize=128)
-def _solution(law, delta, gamma, creep):
+def _solution(law: Law, delta: float, gamma: float, creep: float) -> "tuple[_Part]":
     """The parts from within."""
     for crowd in (1, _CROWDED) if law.yields else (1,):
         for count in _POINTS:
@@ -164,7 +165,7 @@ def _solution(law, delta, gamma, creep):
                          "with I")
 
 
-def _iterated(law, delta, gamma, creep, count, crowd):
+def _iterated(law: Any, delta: Any, gamma: Any, creep: Any, count: Any, crowd: Any) -> Any:
     """The parts with series of `count` terms, once they do not change any more."""
     s = chebyshev.points(count)
     parts, before = (), np.zeros(1)
@@ -182,7 +183,7 @@ def _iterated(law, delta, gamma, creep, count, crowd):
                          "or gamma")
 
 
-def _rings(law, delta, creep, crowd, parts):
+def _rings(law: Law, delta: float, creep: float, crowd: int, parts: tuple[Any, ...]) -> "list[_Ring] | None":
     """The rings from within, at the pressure of the last round; None where the law has no such friction."""
     Ry = 1 + delta
     torque = law.rest * Ry**2
@@ -201,7 +202,7 @@ def _rings(law, delta, creep, crowd, parts):
             for inner, end, high, low in zip(radii, radii[1:], frictions, frictions[1:], strict=False)]
 
 
-def _radius(mu, torque, outer, parts):
+def _radius(mu: Any, torque: Any, outer: Any, parts: Any) -> Any:
     """Where friction is mu: R^2 P(R) = torque/mu, by bisection, P rises outwards."""
     low, high = 1.0, outer
     while low < (middle := (low + high) / 2) < high:
@@ -209,14 +210,14 @@ def _radius(mu, torque, outer, parts):
     return high
 
 
-def _pressure(parts, R):
+def _pressure(parts: Any, R: Any) -> Any:
     for part in parts:
         if part.ring.outer >= R:
             return float(C.chebval(2 * part.ring.place(R) - 1, part.pressure))
     return 1.0
 
 
-def _inwards(law, gamma, s, rings, parts):
+def _inwards(law: Any, gamma: Any, s: Any, rings: Any, parts: Any) -> Any:
     """The next parts: Omega and P are integrated from the outermost edge, where they are 0 and 1."""
     found, omega, pressure = [], 0.0, 1.0
     old = parts if len(parts) == len(rings) else [None] * len(rings)
@@ -232,6 +233,6 @@ def _inwards(law, gamma, s, rings, parts):
     return tuple(reversed(found))
 
 
-def _integral(values):
+def _integral(values: np.ndarray) -> np.ndarray:
     """T-coefficients of the integral from s to 1 of a function given at the points."""
     return -C.chebint(chebyshev.transform(values), lbnd=1) / 2

@@ -91,6 +91,10 @@ class Flow:
     functions: ClassVar[tuple[str, ...]] = ()
     if TYPE_CHECKING:
         bottom: ClassVar[float]
+
+        def layers(self, names: Any) -> tuple[Any, ...]: ...
+
+        def conditions(self, edges: Any, names: Any) -> tuple[Any, ...]: ...
     else:  # not annotated: else it would come first among the parameters of a flow that has one of this name
         bottom = 0.0  # z of the lowest edge
     wavenumber: ClassVar[float] = 1.0  # at which the mode leads that is followed where there is no surface mode
@@ -206,7 +210,7 @@ def _own_parameters(cls: type) -> list[str]:
     return [name for name, kind in vars(cls).get("__annotations__", {}).items() if "ClassVar" not in str(kind)]
 
 
-def check_flow(flow):
+def check_flow(flow: Any) -> Any:
     """Return the flow, or raise a ParameterError where it is something else or its base flow contradicts itself."""
     if not isinstance(flow, Flow):
         hint = f"; did you mean {flow.__name__}()?" if isinstance(flow, type) and issubclass(flow, Flow) else ""
@@ -216,7 +220,7 @@ def check_flow(flow):
     return flow
 
 
-def check_parameter(flow, item, value):
+def check_parameter(flow: Any, item: Any, value: Any) -> Any:
     """Return the value as a float (or one of the options), or raise a `ParameterError` that says why not."""
     rule = item.metadata
     if "options" in rule:
@@ -245,7 +249,7 @@ def check_parameter_name(flow: Flow, name: str) -> str:
     return name
 
 
-def allowed(rule):
+def allowed(rule: Any) -> Any:
     """The admissible values in words: `(1, inf)` is open, `[0, inf]` admits its ends, `a | b` is a choice."""
     if "options" in rule:
         return " | ".join(rule["options"])
@@ -257,7 +261,7 @@ def allowed(rule):
     return f"{'[' if closed else '('}{low}, {high}{']' if rule['unbounded'] else ')'}"
 
 
-def span_of(flow, vary):
+def span_of(flow: Any, vary: Any) -> Any:
     """The range of a parameter that is searched unless told otherwise: what the flow says, or around its default."""
     (item,) = (item for item in fields(flow) if item.name == vary)
     rule = item.metadata

@@ -59,7 +59,7 @@ class Sinking:
         lack = top * left * (zeta + pole) / zeta**2
         return zeta, law.between(self._excess(law, zeta, depth), lack), -rate * left
 
-    def _excess(self, law, zeta, depth):
+    def _excess(self, law: Law, zeta: np.ndarray, depth: np.ndarray) -> np.ndarray:
         """Friction over that at rest."""
         return law.start * depth * (2 * zeta + depth) / zeta**2
 
@@ -108,7 +108,7 @@ def pieces(law: Law, shields: float, creep: float) -> tuple[Piece, ...]:
     return tuple(found)
 
 
-def _yielding(law, tau, shields):
+def _yielding(law: Law, tau: float, shields: float) -> "list[Sinking]":
     """The parts of a bed from its yield surface up."""
     bottom = float(np.sqrt(tau / law.start))
     inner = (float(np.sqrt(tau / law.mu(one))) for one in law.breaks if 0 < one < np.inf)
@@ -118,11 +118,11 @@ def _yielding(law, tau, shields):
     return found if len(found) > 1 else [Sinking(0.0, bottom, exact)]
 
 
-def _creeping(law, tau, creep):
+def _creeping(law: Any, tau: Any, creep: Any) -> Any:
     """The parts of a bed from where its shear rate, I zeta = I sqrt(tau/mu), is `creep` times that on top."""
     surface = float(law.inverse(tau))
 
-    def slow(number):
+    def slow(number: Any) -> Any:
         return number * np.sqrt(tau / law.mu(number)) < creep * surface
 
     low, high = np.log(creep * surface / _DEEPEST), np.log(surface)
@@ -136,9 +136,9 @@ def _creeping(law, tau, creep):
     return [Creeping(slow, fast) for slow, fast in zip(edges, edges[1:], strict=False)]
 
 
-def _velocity(law, tau, heights):
+def _velocity(law: Law, tau: float, heights: "Sinking") -> np.ndarray:
     """T-coefficients of the velocity over that at the lower edge: the antiderivative of the series of I zeta dz/ds."""
-    def slope(s):
+    def slope(s: np.ndarray) -> np.ndarray:
         zeta, inertial, stretch = heights.at(law, tau, s)
         return np.asarray(2 * stretch * zeta**2 * inertial)[None]
 
@@ -155,7 +155,7 @@ def profile(law: Law, tau: float, piece: Piece, inertia: float = 1.0) -> Callabl
     """Return the base state of a piece as a function of s."""
     scale = float(law.slope(piece.heights.at(law, tau, np.array([1.0]))[1])[0])
 
-    def at(s):
+    def at(s: np.ndarray) -> Profile:
         zeta, inertial, stretch = piece.heights.at(law, tau, s)
         with np.errstate(divide="ignore", invalid="ignore"):
             slope = law.slope(inertial)

@@ -4,7 +4,7 @@ import sys
 from collections.abc import Iterator, MutableMapping
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..errors import ParameterError
 from . import sources
@@ -128,7 +128,7 @@ def _may_offer(place: str) -> bool:
     return any(f"[{GROUP}]" in file.read_text(encoding="utf-8", errors="replace") for file in files)
 
 
-def nearest(name: str, known) -> str:
+def nearest(name: str, known: Any) -> str:
     """A hint at the name that is meant, or nothing."""
     from difflib import get_close_matches  # slow to import
 

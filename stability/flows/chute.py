@@ -81,16 +81,16 @@ class Chute(Saturated):
                             "mu1 pressure / (density g L)", reason="at or above 1 nothing flows")
     grains: float = parameter(10.0, 0, look=(1.0, 1e3), meaning="L in grain diameters; inertia is its square")
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         super().__post_init__()
         low, high = self.law.range
         self._within("plug", self.law.rest / self.plug, low, high, f"({self.law.rest / high:.6g}, 1)")
 
     @classmethod
-    def extras(cls, law):
+    def extras(cls, law: Any) -> Any:
         return beds.creep_parameter(law, "core", "wall")
 
-    def layers(self, names):
+    def layers(self, names: Any) -> Any:
         law, zones = self.law, self._zones
         labels = ["shear" if not number else f"shear_{number + 1}" for number in range(len(zones))]
         found = sheared_layers(law, [(label, self._state(zone)) for label, zone in zip(labels, zones, strict=True)],
@@ -103,7 +103,7 @@ class Chute(Saturated):
                      for one, zone in zip(found, zones, strict=True))
 
     @property
-    def _zones(self):
+    def _zones(self) -> Any:
         """From the wall to the plug."""
         law, unit = self.law, self.plug / self.law.rest
         wall = float(law.inverse(1 / unit))
@@ -115,21 +115,21 @@ class Chute(Saturated):
         ends = [1.0, *sorted((x for x in inner if self.plug < x < 1), reverse=True), self.plug]
         return [Zone(outer, inside, unit, self.plug) for outer, inside in zip(ends, ends[1:], strict=False)]
 
-    def _state(self, zone) -> Callable[[Any], Equilibrium]:
+    def _state(self, zone: "Zone") -> Callable[[Any], Equilibrium]:
         law = self.law
 
-        def state(s):
+        def state(s: np.ndarray) -> Equilibrium:
             x, inertial, stretch = zone.at(law, s)
             return Equilibrium(stretch, zone.unit, x, inertial)
 
         return state
 
-    def _weighted(self, profile: Callable[[Any], Profile], zone) -> Callable[[Any], Profile]:
+    def _weighted(self, profile: Callable[[Any], Profile], zone: "Zone") -> Callable[[Any], Profile]:
         """The profile with u = U' v, its shear-rate equation times mu' where the law yields: cf. `bed`."""
         law, root = self.law, np.sqrt(zone.unit)
         scale = float(law.slope(zone.at(law, np.array([0.0]))[1])[0])
 
-        def at(s):
+        def at(s: np.ndarray) -> Profile:
             base, (_, inertial, stretch) = profile(s), zone.at(law, s)
             with np.errstate(divide="ignore", invalid="ignore"):
                 slope = law.slope(inertial)
@@ -138,28 +138,28 @@ class Chute(Saturated):
 
         return at
 
-    def conditions(self, edges, names):
+    def conditions(self, edges: Any, names: Any) -> Any:
         parts = [getattr(edges, "shear" if not number else f"shear_{number + 1}") for number in range(len(self._zones))]
         wall, core = parts[0][0], parts[-1][1]
         return wall.v, wall.w, core.w, *([] if self.law.yields else [core.v]), *beds.joints(parts)
 
-    def state(self, layer, z, base):
+    def state(self, layer: str, z: np.ndarray, base: Profile) -> dict[str, Any]:
         pressure = self.plug / self.law.rest
         return {"U": base.U, "dU": base.dU, "shear_stress": 1 - z, "pressure": pressure,
                 "inertial_number": base.dU / np.sqrt(pressure)}
 
     @property
-    def core(self):
+    def core(self) -> float:
         """Half-width of the plug, or of the rigid core of grains that creep."""
         return float(self._zones[-1].at(self.law, np.array([1.0]))[0][0])
 
     @property
-    def plug_velocity(self):
+    def plug_velocity(self) -> float:
         layers = self.layers(None)
         return float(layers[-1].profile(np.array([1.0])).U[0])
 
     @property
-    def flux(self):
+    def flux(self) -> float:
         """Integral of the velocity from wall to wall."""
         total = self.core * self.plug_velocity
         nodes, weights = np.polynomial.legendre.leggauss(128)
@@ -168,7 +168,7 @@ class Chute(Saturated):
             total += float(weights @ np.broadcast_to(base.U * base.dz, nodes.shape)) / 2
         return 2 * total
 
-    def remarks(self):
+    def remarks(self) -> list[str]:
         kind = "plug" if self.law.yields else "no yield stress: rigid core"
         return [f"{kind} of half-width {self.core:.10g}, velocity {self.plug_velocity:.10g}",
                 f"thickness of a shear zone {1 - self.core:.10g}",

@@ -1,10 +1,15 @@
 """Plane Couette flow: two plates sliding past each other."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from ..equations.layer import Layer, Profile
 from .base import Flow, parameter
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from ..equations.forms import Form
 
 
 @dataclass(frozen=True)
@@ -33,14 +38,14 @@ class Couette(Flow):
     Re: float = parameter(1000.0, 0, look=(10.0, 1e4),
                           meaning="Reynolds number of half-width and half the wall speed difference")
 
-    def layers(self, names):
+    def layers(self, names: Any) -> tuple[Layer]:
         return (Layer("fluid", lambda s: profile(s, self.Re)),)
 
-    def conditions(self, edges, names):
+    def conditions(self, edges: Any, names: Any) -> "tuple[Form, Form, Form, Form]":
         """No slip."""
         bottom, top = edges.fluid
         return bottom.v, bottom.w, top.v, top.w
 
 
-def profile(s, Re):
+def profile(s: "np.ndarray", Re: float) -> Profile:
     return Profile(dz=2.0, U=2 * s - 1, dU=1.0, eta=1 / Re, beta=1 / Re)

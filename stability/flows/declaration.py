@@ -7,7 +7,7 @@ writes `declared.py` anew after a declaration has changed; a test compares it wi
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .catalogue import FLOWS, find
 
@@ -66,7 +66,7 @@ def declaration_of(flow: "type[Flow]") -> Declaration:
     return Declaration(flow.name, flow.title, flow.scales, tuple(parameters))
 
 
-def _meaning(flow, item) -> str:
+def _meaning(flow: Any, item: Any) -> str:
     """What a parameter means, and where neutral values of it are looked for."""
     from .base import numeric, span_of
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from math import inf, isinf, sqrt
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -51,32 +51,32 @@ class Dune(Granular):
                              meaning="fluid depth in grain diameters; inf: unbounded fluid", unbounded=True)
     fluid: str = choice("closed-form", "layer", meaning="wall stress in closed form, or a second layer")
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         super().__post_init__()
         if not self._linear:
             beds.check(self.law, self.name, self.shields)
 
     @classmethod
-    def extras(cls, law: type[Law]):
+    def extras(cls, law: type[Law]) -> dict[Any, Any]:
         return beds.creep_parameter(law)
 
     @property
-    def functions(self):  # type: ignore[override]
+    def functions(self) -> Any:  # type: ignore[override]
         if self.fluid == "closed-form":
             return ("R",)
         return ("H",) if isinf(self.depth) else ()
 
     @property
-    def bottom(self):  # type: ignore[override]
+    def bottom(self) -> float:  # type: ignore[override]
         return beds.lowest(self.law, self.shields, self._creep)
 
-    def evaluate(self, k):
+    def evaluate(self, k: np.ndarray) -> dict[Any, Any]:
         if self.fluid == "closed-form":
             response = wavy_wall.response(k, self.Re, self.depth)
             return {"R": (response.value, response.derivative, response.error)}
         return {"H": _vorticity_depth(k, self.Re)} if isinf(self.depth) else {}
 
-    def layers(self, names):
+    def layers(self, names: Any) -> tuple[Any, ...]:
         if self._linear:
             bed: tuple[Layer, ...] = (
                 Layer("bed", lambda s: bed_profile(s, self._excess, self.mu1, self.b), singular=1),)
@@ -87,7 +87,7 @@ class Dune(Granular):
         height = names.H if isinf(self.depth) else self.depth
         return *bed, Layer("fluid", lambda s: fluid_profile(s, height, self.Re), steady=True)
 
-    def conditions(self, edges, names):
+    def conditions(self, edges: Any, names: Any) -> tuple[Any, ...]:
         """No flow below the yield surface; pressure of a monolayer and fluid stress on the moving interface."""
         k, s0 = names.k, names.s0
         surface, stress = edges.bed[1], self._stress
@@ -102,19 +102,19 @@ class Dune(Granular):
         wall, top = edges.fluid
         return (*bed, surface.t - stress * wall.t, wall.v - 1j * s0, wall.w, *self._far(top, k))
 
-    def _below(self, edges):
+    def _below(self, edges: Any) -> tuple[Any, ...]:
         """No flow at the yield surface, no slip on a floor; all is continuous where the slope of the law jumps."""
         if self._linear:
             return (edges.bed[0].w,)
         return beds.below(edges, len(self._pieces), self.law.yields)
 
-    def _far(self, top, k):
+    def _far(self, top: Any, k: float) -> tuple[float, ...]:
         """No slip on a lid; irrotational decay exp(-k z) above the vorticity of an unbounded fluid."""
         if isinf(self.depth):
             return top.v + k * top.w, top.t - 2 * k**2 * top.w
         return top.v, top.w
 
-    def long_wave(self, k):
+    def long_wave(self, k: np.ndarray) -> np.ndarray:
         """sigma = i k (2 shields / 3 b) (r - 1)^2 (r + 2) R, r = sqrt(shields): thesis (4.81), (4.84) for any R.
 
         Under any law sigma = i k shields dQ/d(shields) R: the bed adapts at once to the stress shields (1 - R s0), and
@@ -126,7 +126,7 @@ class Dune(Granular):
             return 1j * k * (self.shields * slope * response - over_floor)
         return 2j * k * self.shields / (3 * self.b) * self._excess**2 * (self._excess + 3) * response
 
-    def state(self, layer, z, base):
+    def state(self, layer: str, z: np.ndarray, base: Profile) -> dict[str, Any]:
         """In the bed the shear stress is uniform and the pressure the weight above; I from the friction law (4.48)."""
         if layer == "fluid":
             return super().state(layer, z, base)
@@ -135,42 +135,42 @@ class Dune(Granular):
         return {**super().state(layer, z, base), "shear_stress": self._stress, "pressure": pressure,
                 "inertial_number": inertial}
 
-    def remarks(self):
+    def remarks(self) -> list[str]:
         bottom = f"yield surface at z = {self.bottom:.10g}: no flow below" if self.law.yields else \
             f"no yield stress: rigid floor at z = {self.bottom:.10g}"
         return [bottom,
                 f"interface at z = 0, velocity {self._surface_speed:.10g}"]
 
     @property
-    def _linear(self):
+    def _linear(self) -> bool:
         return self.friction is Linear
 
     @property
-    def _stress(self):
+    def _stress(self) -> float:
         """Shear stress on the bed, in units of the pressure on it."""
         return self.mu1 * self.shields if self._linear else self.law.rest * self.shields
 
     @property
-    def _creep(self):
+    def _creep(self) -> float:
         return getattr(self, "creep", 0.0)
 
     @property
-    def _pieces(self):
+    def _pieces(self) -> Any:
         return beds.pieces(self.law, self.shields, self._creep)
 
     @property
-    def _excess(self):
+    def _excess(self) -> float:
         """sqrt(shields) - 1 without cancellation."""
         return (self.shields - 1) / (sqrt(self.shields) + 1)
 
     @property
-    def _surface_speed(self):
+    def _surface_speed(self) -> float:
         if not self._linear:
             return self._pieces[-1].top
         return 2 * self._excess**2 * (2 * self._excess + 3) / (3 * self.b)
 
 
-def bed_profile(s, excess, mu1, b):
+def bed_profile(s: np.ndarray, excess: float, mu1: float, b: float) -> Profile:
     """Base state in zeta = sqrt(1 - z), from r = sqrt(shields) = 1 + excess at the yield surface to 1.
 
     Velocity gradient (r^2 - zeta^2) / (b zeta), thesis (4.52), pressure zeta^2, friction law (4.48). The
@@ -193,12 +193,12 @@ def bed_profile(s, excess, mu1, b):
     )
 
 
-def fluid_profile(s, height, Re):
+def fluid_profile(s: np.ndarray, height: float, Re: float) -> Profile:
     """Newtonian fluid in linear shear U = z, 0 <= z <= height; stresses in units of the base shear stress."""
     return Profile(dz=height, U=height * s, dU=1.0, rho=Re, eta=1.0, beta=1.0, stress=1 / Re)
 
 
-def _vorticity_depth(k, Re):
+def _vorticity_depth(k: Any, Re: Any) -> Any:
     """Height above which the vorticity over a wavy wall is below rounding, and its slope in k.
 
     The vorticity is an Airy function: it decays like exp(-k z) and like exp(-(sqrt(2)/3) |f z|^{3/2}),

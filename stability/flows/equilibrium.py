@@ -32,7 +32,7 @@ class Equilibrium:
     scale: float = 1.0  # of the shear rate: U' = scale I sqrt(pressure)
 
     @property
-    def shear_rate(self):
+    def shear_rate(self) -> np.ndarray:
         return self.scale * self.inertial * np.sqrt(self.pressure)
 
 
@@ -61,15 +61,15 @@ def sheared_layers(law: Law, parts: list[tuple[str, Callable[[Any], Equilibrium]
     return found
 
 
-def _crowded(state, end, s):
+def _crowded(state: Any, end: Any, s: Any) -> Any:
     """What a function of s says where heights crowd at one of its ends, 0 or 1."""
     x = s if end == 0 else 1 - s
     here = state(x**_CROWD if end == 0 else 1 - x**_CROWD)
     return replace(here, dz=here.dz * _CROWD * x ** (_CROWD - 1))
 
 
-def _profile(law, state, series, low, inertia):
-    def at(s):
+def _profile(law: Law, state: Callable[..., Any], series: np.ndarray, low: float, inertia: float) -> Callable[..., Any]:
+    def at(s: np.ndarray) -> Profile:
         here = state(s)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             rate, slope = here.shear_rate, law.slope(here.inertial)
@@ -90,7 +90,7 @@ class Saturated(Granular):
     mu2: float = parameter(tan(radians(32.76)), 0, look=(0.05, 2.0), meaning="friction of rapid flow")
     I0: float = parameter(0.279, 0, look=(0.01, 10.0), meaning="inertial number at which friction is half-way between")
 
-    def _within(self, name, value, low, high, shown):
+    def _within(self, name: str, value: float, low: float, high: float, shown: str) -> None:
         """Refuse a friction coefficient that the law does not reach."""
         if not low < value < high:
             raise ParameterError(f"{self.name}: {name} must lie in {shown}: friction of law {self.law.name} lies "
@@ -104,10 +104,10 @@ class Steady(Saturated):
 
     why: ClassVar[str] = "its perturbations are not those of a parallel layer"
 
-    def base_only(self, names):
+    def base_only(self, names: Any) -> None:
         """Refuse what asks for equations, with k as a symbol."""
         if isinstance(getattr(names, "k", None), Form):
             self.conditions(None, names)
 
-    def conditions(self, edges, names):
+    def conditions(self, edges: Any, names: Any) -> Any:
         raise ParameterError(f"{self.name}: {self.why}: ask for stability base {self.name}")

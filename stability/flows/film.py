@@ -1,11 +1,14 @@
 """A liquid film falling down an inclined plane (Benjamin 1957, Yih 1963)."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from ..equations.layer import Layer, Profile
 from ..numerics.angles import cot_deg
 from .base import Flow, parameter
+
+if TYPE_CHECKING:
+    import numpy as np
 
 
 @dataclass(frozen=True)
@@ -36,10 +39,10 @@ class Film(Flow):
     We: float = parameter(0.0, 0, closed=True, look=(1e-5, 1e3),
                           meaning="surface tension / (density * surface speed^2 * depth)")
 
-    def layers(self, names):
+    def layers(self, names: Any) -> tuple[Layer]:
         return (Layer("liquid", lambda s: profile(s, self.Re)),)
 
-    def conditions(self, edges, names):
+    def conditions(self, edges: Any, names: Any) -> tuple[Any, ...]:
         """No slip on the plane; on the displaced surface no shear stress and the pressure of surface tension.
 
         The base stresses there are s0 times their slopes across the film, -2 and -2 cot(slope) in viscous units.
@@ -54,19 +57,19 @@ class Film(Flow):
             (names.rate + 1j) * s0 - surface.w,
         )
 
-    def long_wave(self, k):
+    def long_wave(self, k: "np.ndarray") -> "np.ndarray":
         """sigma = -2 i k: waves of twice the surface speed, Yih (1963)."""
         return -2j * k
 
-    def state(self, layer, z, base):
+    def state(self, layer: Any, z: Any, base: Any) -> Any:
         """Pressure of the weight across the film, 2 cot(slope) (1 - z) / Re."""
         return {**super().state(layer, z, base), "pressure": 2 * self.cot_slope * (1 - z) / self.Re}
 
     @property
-    def cot_slope(self):
+    def cot_slope(self) -> float:
         return float(cot_deg(self.slope_deg))
 
 
-def profile(s, Re):
+def profile(s: "np.ndarray", Re: float) -> Profile:
     """Stresses in viscous units, viscosity * surface speed / depth."""
     return Profile(dz=1.0, U=2 * s - s**2, dU=2 - 2 * s, rho=Re, eta=1.0, beta=1.0, stress=1 / Re)

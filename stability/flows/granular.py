@@ -27,7 +27,7 @@ class _Scene(type):
         return type.__call__(_with_law(cls, law, values, named), **named)
 
 
-def _with_law(cls, law, values, named):
+def _with_law(cls: Any, law: Any, values: Any, named: Any) -> Any:
     """The class for a scene under a law; its parameters are added to `named`."""
     if not isinstance(law, Law):
         hint = f"; did you mean {law.__name__}()?" if isinstance(law, type) and issubclass(law, Law) else ""
@@ -124,7 +124,7 @@ class Granular(Flow, metaclass=_Scene):
 
 
 @lru_cache(maxsize=256)
-def _under(scene, law):
+def _under(scene: Any, law: Any) -> Any:
     usual = {item.name: item for item in fields(scene)}
     names = [item.name for item in fields(law)]
     replaced = scene.lawful()
@@ -151,5 +151,5 @@ def _declared(usual: Any, item: Any) -> Any:
     return field(default=source.default, metadata={**item.metadata, **look})
 
 
-def _revived(ticket, law, own):
+def _revived(ticket: Any, law: Any, own: Any) -> Any:
     return sources.revive(ticket, {"law": law, **own})

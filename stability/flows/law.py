@@ -126,7 +126,7 @@ class Law:
 
 
 @lru_cache(maxsize=256)
-def _verified(law):
+def _verified(law: Any) -> None:
     """Raise ParameterError where a law of one's own is no law, or where what it gives contradicts its mu(I)."""
     label = law.name
     mu = np.asarray(law.mu(_LOOK))
@@ -149,7 +149,7 @@ def _verified(law):
         _compare(law, "between(excess, lack)", found, _LOOK, room, smooth, "")
 
 
-def _compare(law, what, value, expected, room, where, remedy):
+def _compare(law: Any, what: Any, value: Any, expected: Any, room: Any, where: Any, remedy: Any) -> None:
     value = np.broadcast_to(np.asarray(value, dtype=float), expected.shape)
     off = np.where(where, np.abs(value - expected) - room, -1.0)
     index = int(np.argmax(np.where(np.isnan(off), inf, off)))

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from functools import lru_cache
 from math import exp, inf, radians, tan
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -30,24 +30,24 @@ class Linear(Law):
     b: float = parameter(1.0, 0, look=(0.05, 20.0), meaning="rate coefficient of friction mu1 (1 + b I)")
 
     @property
-    def range(self):
+    def range(self) -> Any:
         return self.mu1, inf
 
     @property
-    def start(self):
+    def start(self) -> Any:
         return self.mu1
 
-    def mu(self, I):  # noqa: E741
+    def mu(self, I: Any) -> Any:  # noqa: E741
         return self.mu1 * (1 + self.b * I)
 
-    def slope(self, I):  # noqa: E741
+    def slope(self, I: Any) -> Any:  # noqa: E741
         return self.mu1 * self.b + 0 * I
 
-    def inverse(self, mu):
+    def inverse(self, mu: Any) -> Any:
         self.check(mu)
         return (mu / self.mu1 - 1) / self.b
 
-    def beyond(self, excess):
+    def beyond(self, excess: Any) -> Any:
         return excess / (self.mu1 * self.b)
 
 
@@ -70,32 +70,32 @@ class Saturating(Law):
     I0: float = parameter(0.279, 0, look=(0.01, 10.0),
                           meaning="inertial number at which friction is half-way between mu1 and mu2")
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         super().__post_init__()
         _rising(self)
 
     @property
-    def range(self):
+    def range(self) -> Any:
         return self.mu1, self.mu2
 
     @property
-    def start(self):
+    def start(self) -> float:
         return self.mu1
 
-    def mu(self, I):  # noqa: E741
+    def mu(self, I: float) -> float:  # noqa: E741
         return self.mu1 + (self.mu2 - self.mu1) * I / (self.I0 + I)
 
-    def slope(self, I):  # noqa: E741
+    def slope(self, I: Any) -> Any:  # noqa: E741
         return (self.mu2 - self.mu1) * self.I0 / (self.I0 + I) ** 2
 
-    def inverse(self, mu):
+    def inverse(self, mu: float) -> float:
         self.check(mu)
         return self.I0 * (mu - self.mu1) / (self.mu2 - mu)
 
-    def beyond(self, excess):
+    def beyond(self, excess: np.ndarray) -> np.ndarray:
         return self.between(excess, self.mu2 - self.mu1 - excess)
 
-    def between(self, excess, lack):
+    def between(self, excess: np.ndarray, lack: np.ndarray) -> np.ndarray:
         return self.I0 * excess / lack
 
 
@@ -117,24 +117,24 @@ class PowerLaw(Law):
     n: float = parameter(1.0, 0, look=(0.2, 2.0), meaning="exponent of the inertial number")
 
     @property
-    def range(self):
+    def range(self) -> Any:
         return self.mu1, inf
 
     @property
-    def start(self):
+    def start(self) -> Any:
         return self.mu1
 
-    def mu(self, I):  # noqa: E741
+    def mu(self, I: Any) -> Any:  # noqa: E741
         return self.mu1 * (1 + self.b * I**self.n)
 
-    def slope(self, I):  # noqa: E741
+    def slope(self, I: Any) -> Any:  # noqa: E741
         return self.mu1 * self.b * self.n * I ** (self.n - 1)
 
-    def inverse(self, mu):
+    def inverse(self, mu: Any) -> Any:
         self.check(mu)
         return self.beyond(mu - self.mu1)
 
-    def beyond(self, excess):
+    def beyond(self, excess: Any) -> Any:
         return (excess / (self.mu1 * self.b)) ** (1 / self.n)
 
 
@@ -166,43 +166,43 @@ class Regularised(Law):
                              reason="from 2 on slow flow is ill posed")
     mu_inf: float = parameter(0.05, 0, closed=True, meaning="slope of friction in rapid flow")
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         super().__post_init__()
         _rising(self)
         _ = self.I1  # whether there is one
 
     @property
-    def I1(self):
+    def I1(self) -> Any:
         """The inertial number at which the branches meet."""
         return _neutral(self.mu1, self.mu2, self.I0, self.mu_inf)
 
     @property
-    def A(self):
+    def A(self) -> Any:
         return self.I1 * exp(self.alpha / self._upper(self.I1) ** 2)
 
     @property
-    def breaks(self):  # type: ignore[override]
+    def breaks(self) -> Any:  # type: ignore[override]
         return (self.I1,)
 
     @property
-    def range(self):
+    def range(self) -> Any:
         return 0.0, inf if self.mu_inf else self.mu2
 
     @property
-    def start(self):
+    def start(self) -> Any:
         return 0.0
 
     @property
-    def rest(self):
+    def rest(self) -> Any:
         return self.mu1
 
-    def mu(self, I):  # noqa: E741
+    def mu(self, I: Any) -> Any:  # noqa: E741
         slow = np.minimum(I, self.I1)
         with np.errstate(divide="ignore"):
             lower = np.sqrt(self.alpha / np.log(self.A / slow))
         return np.where(np.less(I, self.I1), lower, self._upper(I))
 
-    def slope(self, I):  # noqa: E741
+    def slope(self, I: Any) -> Any:  # noqa: E741
         I = np.asarray(I, dtype=float)  # noqa: E741
         first = self._first
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -210,11 +210,11 @@ class Regularised(Law):
         upper = (first * self.I0 + self.mu_inf * I * (2 * self.I0 + I)) / (self.I0 + I) ** 2
         return np.where(self.I1 > I, lower, upper)
 
-    def inverse(self, mu):
+    def inverse(self, mu: Any) -> Any:
         self.check(mu)
         return self.beyond(mu)
 
-    def beyond(self, excess):
+    def beyond(self, excess: Any) -> Any:
         """On the upper branch mu_inf I^2 + (mu2 - mu) I = (mu - mu1) I0."""
         mu = np.asarray(excess, dtype=float)
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
@@ -225,17 +225,17 @@ class Regularised(Law):
         return np.where(mu < self._upper(self.I1), lower, upper)
 
     @property
-    def _first(self):
+    def _first(self) -> Any:
         return self.mu2 - self.mu1
 
-    def _upper(self, I):  # noqa: E741
+    def _upper(self, I: Any) -> Any:  # noqa: E741
         return (self.mu1 * self.I0 + self.mu2 * I + self.mu_inf * I**2) / (self.I0 + I)
 
 
 @lru_cache(maxsize=256)
-def _neutral(mu1, mu2, I0, mu_inf):
+def _neutral(mu1: Any, mu2: Any, I0: Any, mu_inf: Any) -> Any:
     """The least I at which C of the upper branch of the regularised law is 0; ParameterError where there is none."""
-    def excess(I):  # noqa: E741
+    def excess(I: Any) -> Any:  # noqa: E741
         mu = (mu1 * I0 + mu2 * I + mu_inf * I**2) / (I0 + I)
         slope = ((mu2 - mu1) * I0 + mu_inf * I * (2 * I0 + I)) / (I0 + I) ** 2
         r = I * slope / mu
@@ -252,7 +252,7 @@ def _neutral(mu1, mu2, I0, mu_inf):
     return high
 
 
-def _rising(law):
+def _rising(law: Any) -> None:
     if not law.mu1 < law.mu2:
         raise ParameterError(f"{law.name}: mu2 must exceed mu1, friction at rest (got mu1 = {law.mu1:g}, "
                              f"mu2 = {law.mu2:g})")

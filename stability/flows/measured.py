@@ -88,7 +88,7 @@ def from_file(name: str, path: Any, names: list[str]) -> DataTable:
     return _table(where, os.fspath(text), columns, sha256(content).hexdigest()[:DIGEST], places)
 
 
-def _columns(where, lines):
+def _columns(where: Any, lines: Any) -> Any:
     """The columns z, U (and U_error) as arrays, and where each row stands."""
     rows = [(number, [cell.strip() for cell in next(csv.reader([line]), [])])
             for number, line in enumerate((line.partition("#")[0] for line in lines), 1) if line.strip()]
@@ -113,14 +113,14 @@ def _columns(where, lines):
     return list(np.array(table, dtype=float).reshape(-1, len(wanted)).T), [f", line {number}" for number, _ in rows[1:]]
 
 
-def _numbers(name, values):
+def _numbers(name: Any, values: Any) -> Any:
     numbers = [as_number(value) for value in flat(values, name)]
     if None in numbers:
         raise ParameterError(f"{name} must be numbers (got {shown(flat(values, name)[numbers.index(None)])})")
     return np.array(numbers, dtype=float)
 
 
-def _table(where, name, columns, digest, places):
+def _table(where: Any, name: Any, columns: Any, digest: Any, places: Any) -> Any:
     """The table of checked columns, by rising z."""
     z, U, *errors = columns
     if not LEAST_ROWS <= len(z) <= _MOST:

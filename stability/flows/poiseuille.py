@@ -1,10 +1,15 @@
 """Plane Poiseuille flow: pressure-driven flow between two plates (Orszag 1971)."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from ..equations.layer import Layer, Profile
 from .base import Flow, parameter
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from ..equations.forms import Form
 
 
 @dataclass(frozen=True)
@@ -28,15 +33,15 @@ class Poiseuille(Flow):
 
     Re: float = parameter(1e4, 0, look=(10.0, 1e5), meaning="Reynolds number of half-width and centreline speed")
 
-    def layers(self, names):
+    def layers(self, names: Any) -> tuple[Layer]:
         return (Layer("fluid", lambda s: profile(s, self.Re)),)
 
-    def conditions(self, edges, names):
+    def conditions(self, edges: Any, names: Any) -> "tuple[Form, Form, Form, Form]":
         """No slip."""
         bottom, top = edges.fluid
         return bottom.v, bottom.w, top.v, top.w
 
-    def halves(self):
+    def halves(self) -> Any:
         """Modes with w even or odd about the centreline, on 0 <= z <= 1; a flow derived from this one stays whole."""
         return (EvenPoiseuille(self.Re), OddPoiseuille(self.Re)) if type(self) is Poiseuille else (self,)
 
@@ -48,15 +53,15 @@ class EvenPoiseuille(Poiseuille):
     bottom: ClassVar[float] = 0.0
     reflection: ClassVar[int] = 1
 
-    def layers(self, names):
+    def layers(self, names: Any) -> tuple[Layer]:
         return (Layer("fluid", lambda s: profile(s, self.Re, bottom=0)),)
 
-    def conditions(self, edges, names):
+    def conditions(self, edges: Any, names: Any) -> "tuple[Form, Form, Form, Form]":
         """On the centreline u and n are odd; no slip on the plate."""
         centreline, plate = edges.fluid
         return centreline.v, centreline.n, plate.v, plate.w
 
-    def halves(self):
+    def halves(self) -> Any:
         return (self,)
 
 
@@ -66,13 +71,13 @@ class OddPoiseuille(EvenPoiseuille):
 
     reflection: ClassVar[int] = -1
 
-    def conditions(self, edges, names):
+    def conditions(self, edges: Any, names: Any) -> "tuple[Form, Form, Form, Form]":
         """On the centreline w and t are odd; no slip on the plate."""
         centreline, plate = edges.fluid
         return centreline.w, centreline.t, plate.v, plate.w
 
 
-def profile(s, Re, bottom=-1):
+def profile(s: "np.ndarray", Re: float, bottom: int = -1) -> Profile:
     """U = 1 - z^2 for bottom <= z <= 1."""
     z = bottom + (1 - bottom) * s
     return Profile(dz=1.0 - bottom, U=1 - z**2, dU=-2 * z, eta=1 / Re, beta=1 / Re)

@@ -19,6 +19,7 @@ alpha > 1 makes the denominator vanish first.
 """
 
 from math import inf
+from typing import Any
 
 import numpy as np
 
@@ -26,7 +27,7 @@ _ROUNDING = 1e-14  # of the terms of C
 _ANGLES = np.linspace(-1, 1, 401)  # s = sin 2a, odd number: includes 0
 
 
-def condition(r, alpha):
+def condition(r: np.ndarray, alpha: np.ndarray) -> np.ndarray:
     """C from r = beta/eta = I mu'/mu and alpha = mu (1 - r/2); ill posed where positive.
 
     >>> from stability.flows.laws import Saturating
@@ -37,7 +38,7 @@ def condition(r, alpha):
     return 4 * r * (r - 1) + alpha**2
 
 
-def ill_posed(r, alpha):
+def ill_posed(r: np.ndarray, alpha: np.ndarray) -> np.ndarray:
     """True where short waves of some direction grow without bound: numbers or arrays.
 
     What is rounding is not: the regularised law is neutral where its branches meet, C(I1) = 0.
@@ -47,14 +48,14 @@ def ill_posed(r, alpha):
     return ((excess > _ROUNDING * (np.abs(r) + alpha**2)) & (root < 1)) | (alpha > 1)
 
 
-def law_condition(law, I):  # noqa: E741
+def law_condition(law: Any, I: Any) -> Any:  # noqa: E741
     """C of a friction law at the inertia number I, a number or an array."""
     mu = law.mu(I)
     r = I * law.slope(I) / mu
     return condition(r, mu * (1 - r / 2))
 
 
-def well_posed_band(law, low=1e-6, high=1e6):
+def well_posed_band(law: Any, low: Any = 1e-6, high: Any = 1e6) -> Any:
     """Interval of I on which C <= 0, as (start, stop); None if C > 0 for all low < I < high.
 
     >>> from math import radians, tan
@@ -72,7 +73,7 @@ def well_posed_band(law, low=1e-6, high=1e6):
             _root(law, grid[last], grid[last + 1]) if last + 1 < len(grid) else inf)
 
 
-def short_wave_growth(eta, r, alpha, rho=1.0):
+def short_wave_growth(eta: Any, r: Any, alpha: Any, rho: Any = 1.0) -> Any:
     """Largest lambda / k^2 over the direction of short waves; inf where the pressure equation is not elliptic.
 
     Arguments are numbers or arrays (points,). Positive where `ill_posed`.
@@ -85,7 +86,7 @@ def short_wave_growth(eta, r, alpha, rho=1.0):
     return np.where(elliptic[..., 0], np.nanmax(rate, axis=-1) + 0.0, inf)
 
 
-def _root(law, low, high):
+def _root(law: Any, low: Any, high: Any) -> Any:
     """The zero of C between two inertia numbers, by bisection to rounding."""
     rising = law_condition(law, high) > 0
     for _ in range(200):

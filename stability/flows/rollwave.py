@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from fractions import Fraction
 from math import atan, degrees, radians, sqrt, tan
-from typing import ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from ..equations.layer import Layer, Profile
 from ..errors import ParameterError
@@ -11,6 +11,9 @@ from ..numerics.angles import tan_deg
 from .base import parameter
 from .granular import Granular
 from .laws import Saturating
+
+if TYPE_CHECKING:
+    import numpy as np
 
 
 @dataclass(frozen=True)
@@ -45,7 +48,7 @@ class RollWave(Granular):
     mu1: float = parameter(tan(radians(20.9)), 0, look=(0.05, 2.0), meaning="friction at rest")
     mu2: float = parameter(tan(radians(32.76)), 0, look=(0.05, 2.0), meaning="friction of rapid flow")
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         super().__post_init__()
         low, high = self.law.range
         if not low < self.mu < high:
@@ -54,10 +57,10 @@ class RollWave(Granular):
                                  f"({degrees(atan(low)):g}, {degrees(atan(high)):g}): "
                                  f"no steady flow elsewhere (got {self.slope_deg:g})")
 
-    def layers(self, names):
+    def layers(self, names: Any) -> tuple[Layer]:
         return (Layer("grains", lambda s: profile(s, self.mu, self.e0, self.Fr2)),)
 
-    def conditions(self, edges, names):
+    def conditions(self, edges: Any, names: Any) -> tuple[Any, ...]:
         """No slip on the plane; no stress on the displaced surface, where the base shear stress is -mu s0."""
         s0 = names.s0
         wall, surface = edges.grains
@@ -69,28 +72,28 @@ class RollWave(Granular):
             (names.rate + 2j / 3) * s0 - surface.w,
         )
 
-    def long_wave(self, k):
+    def long_wave(self, k: "np.ndarray") -> "np.ndarray":
         """sigma = -i k: waves of 5/2 of the mean speed."""
         return -1j * k
 
-    def state(self, layer, z, base):
+    def state(self, layer: Any, z: Any, base: Any) -> Any:
         """Pressure 1 - z; the inertial number is uniform, I / I0 = (mu - mu1) / (mu2 - mu)."""
         return {**super().state(layer, z, base), "pressure": 1 - z, "inertial_number": self.inertial_number}
 
-    def remarks(self):
+    def remarks(self) -> Any:
         return ["inertial_number in units of I0 of the friction law"] if self.unit else []
 
     @property
-    def inertial_number(self):
+    def inertial_number(self) -> Any:
         """In units of I0 where that is no parameter."""
         return float(self.law.inverse(self.mu))
 
     @property
-    def mu(self):
+    def mu(self) -> float:
         return float(tan_deg(self.slope_deg))
 
     @property
-    def e0(self):
+    def e0(self) -> float:
         """I mu'(I); of the saturating law (mu2 - mu)(mu - mu1)/(mu2 - mu1) without cancellation."""
         if self.friction is not Saturating:
             return self.inertial_number * float(self.law.slope(self.inertial_number))
@@ -98,12 +101,12 @@ class RollWave(Granular):
         return float((mu2 - mu) * (mu - mu1) / (mu2 - mu1))
 
     @property
-    def froude(self):
+    def froude(self) -> Any:
         """Forterre's Froude number: mean speed over sqrt(g h cos slope)."""
         return 0.4 * sqrt(self.Fr2)
 
 
-def profile(s, mu, e0, Fr2):
+def profile(s: "np.ndarray", mu: float, e0: float, Fr2: float) -> Profile:
     """Base state in zeta = sqrt(1 - z) = 1 - s: every coefficient of the equations is a polynomial."""
     zeta = 1 - s
     return Profile(dz=2 * zeta, rho=Fr2, U=2 * (1 - zeta**3) / 3, dU=zeta, eta=mu * zeta, beta=e0 * zeta,

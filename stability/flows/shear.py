@@ -64,11 +64,11 @@ class Shear(Flow):
         _fluid(self._key)  # refuses what is no fluid
 
     @property
-    def _key(self):
+    def _key(self) -> Any:
         return self.profile, self.bottom, self.top, self.z_low, self.z_high
 
     @property
-    def _base(self):
+    def _base(self) -> Any:
         return _base(self._key, self.Re)
 
     @property
@@ -80,14 +80,14 @@ class Shear(Flow):
         return "decay" in (self.bottom, self.top)
 
     @property
-    def data(self):  # type: ignore[override]
+    def data(self) -> Any:  # type: ignore[override]
         return _fluid(self._key).curve.data
 
     @property
     def chopped(self) -> float:  # type: ignore[override]
         return self._base.cut
 
-    def heights(self, s):
+    def heights(self, s: Any) -> Any:
         """z at the points 0 <= s <= 1 of the layer."""
         return self._base.way.z(s)
 
@@ -98,16 +98,16 @@ class Shear(Flow):
         return {item.name: self.profile.text(heights) if item.name == "profile" else getattr(self, item.name)
                 for item in fields(self)}
 
-    def layers(self, names):
+    def layers(self, names: Any) -> Any:
         base = self._base
         return (Layer("fluid", lambda s: profile(s, base, self.Re)),)
 
-    def conditions(self, edges, names):
+    def conditions(self, edges: Any, names: Any) -> Any:
         """Two at each edge; see the class."""
         bottom, top = edges.fluid
         return *self._edge(self.bottom, bottom, -1, names), *self._edge(self.top, top, 1, names)
 
-    def _edge(self, kind, edge, side, names):
+    def _edge(self, kind: Any, edge: Any, side: Any, names: Any) -> Any:
         """At a cut: no vorticity, t = 2 k^2 w, and the velocity w ~ exp(-k z) of a fluid without."""
         if kind == "wall":
             return edge.v, edge.w
@@ -116,7 +116,7 @@ class Shear(Flow):
         k = names.k
         return edge.t - 2 * k**2 * edge.w, edge.v + side * k * edge.w
 
-    def left_out(self, edges, names, k, sigma):
+    def left_out(self, edges: Any, names: Any, k: Any, sigma: Any) -> Any:
         """What makes the conditions at a cut exact.
 
         With w = a exp(-k z) + b exp(-lambda z) and vorticity f = w'' - k^2 w they are f + f'/lambda = 0 and
@@ -132,13 +132,13 @@ class Shear(Flow):
                 found |= {2 * index: slope / fall, 2 * index + 1: -side * slope / (fall * (fall + k))}
         return found
 
-    def shortest(self):
+    def shortest(self) -> Any:
         """The energy of a perturbation grows no faster than max |U'| - 2 k^2/Re."""
         base = self._base
         s = np.linspace(0, 1, _HEIGHTS)
         return float(np.sqrt(0.5 * self.Re * np.abs(base.dU(s, base.way.z(s))).max()) * _MARGIN)
 
-    def bound(self, k, sigma):
+    def bound(self, k: Any, sigma: Any) -> Any:
         """Those that grow, and those whose vorticity falls by exp(-8) at least on the way to a cut, in a few waves."""
         base, sigma = self._base, np.asarray(sigma, dtype=complex)
         inside = np.ones(sigma.shape, dtype=bool)
@@ -149,12 +149,12 @@ class Shear(Flow):
         return inside
 
 
-def _fall(k, inertia):
+def _fall(k: Any, inertia: Any) -> Any:
     """The rate lambda at which vorticity falls where U is constant."""
     return np.sqrt(k**2 + inertia + 0j)
 
 
-def profile(s, base, Re):
+def profile(s: Any, base: Any, Re: Any) -> Any:
     """Stresses in viscous units."""
     z = base.way.z(s)
     return Profile(dz=base.way.slope(s), U=base.U(s, z), dU=base.dU(s, z), rho=Re, eta=1.0, beta=1.0, stress=1 / Re)
@@ -172,7 +172,7 @@ class _Fluid:
 
 
 @lru_cache(maxsize=128)
-def _fluid(key):
+def _fluid(key: Any) -> Any:
     """The fluid of profile, edges and heights; raises ParameterError where they make none."""
     velocity, bottom, top, z_low, z_high = key
     open_ = bottom == "decay", top == "decay"
@@ -185,14 +185,14 @@ def _fluid(key):
     return _Fluid(curve, low, high, limits, sheared(curve.U, low, high, limits))
 
 
-def _limit(curve, side, start):
+def _limit(curve: Any, side: Any, start: Any) -> Any:
     known = curve.limits[side]
     if known is None and not isinstance(curve, Function):
         raise ParameterError(f"shear: {('bottom', 'top')[side]} = decay: {curve.name} has a wall or a free edge there")
     return known if known is not None else limit(curve.U, start, (-1, 1)[side], f"shear: {curve!r}")
 
 
-def _height(velocity, side, open_, given):
+def _height(velocity: Any, side: Any, open_: Any, given: Any) -> Any:
     """The height of an edge: infinity, the one given, or that of the profile."""
     name, edge, away = (("z_low", "bottom", -inf), ("z_high", "top", inf))[side]
     own = (velocity.low, velocity.high)[side]
@@ -219,7 +219,7 @@ class _Base:
     at the ends, `cut` bounds what the series leaves out.
     """
 
-    def __init__(self, fluid, Re):
+    def __init__(self, fluid: Any, Re: Any) -> None:
         self.way: Stretch = stretched(fluid.curve.U, fluid.part, fluid.low, fluid.high, Re)
         self.ways = fluid.part.core[0] - self.way.low, self.way.high - fluid.part.core[1]
         self._curve, self.cut = fluid.curve, 0.0
@@ -230,20 +230,20 @@ class _Base:
             self._series, self.cut = _series(self.way, fluid.curve)
             self._slope = np.polynomial.chebyshev.chebder(self._series) * 2
 
-    def U(self, s, z):
+    def U(self, s: Any, z: Any) -> Any:
         if self._curve.dU is None:
             return np.polynomial.chebyshev.chebval(2 * s - 1, self._series)
         return self._curve.U(z)
 
-    def dU(self, s, z):
+    def dU(self, s: Any, z: Any) -> Any:
         if self._curve.dU is None:
             return np.polynomial.chebyshev.chebval(2 * s - 1, self._slope) / self.way.slope(s)
         return self._curve.dU(z)
 
 
-def _series(way, curve):
+def _series(way: Any, curve: Any) -> Any:
     """The series of U in s, and what it leaves out; raises NotSmooth where it does not end."""
-    def sample(s):
+    def sample(s: Any) -> Any:
         values = curve.U(way.z(s))
         if not np.isfinite(values).all():
             z = way.z(s)[~np.isfinite(values)][0]
@@ -260,5 +260,5 @@ def _series(way, curve):
 
 
 @lru_cache(maxsize=256)
-def _base(key, Re):
+def _base(key: Any, Re: Any) -> Any:
     return _Base(_fluid(key), Re)

@@ -4,9 +4,10 @@ Stresses in equilibrium fix friction mu = (shear stress)/(pressure), the law the
 rate U' = I sqrt(p); the velocity follows by quadrature to rounding. beta = p mu' I/U' and alpha = mu - I mu'/2.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import atan, degrees
-from typing import ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from ..numerics.angles import tan_deg
 from . import bed as beds
 from .base import parameter
 from .equilibrium import Equilibrium, Saturated, Steady, sheared_layers
+
+if TYPE_CHECKING:
+    from ..equations.forms import Form
 
 
 @dataclass(frozen=True)
@@ -37,17 +41,17 @@ class PlaneShear(Saturated):
     inertial: float = parameter(0.1, 0, look=(1e-3, 10.0), meaning="inertial number I: (shear rate) d/sqrt(p/density)")
     inertia: float = parameter(1.0, 0, look=(1e-3, 1e4), meaning="density (plate velocity)^2 / pressure, (I l/d)^2")
 
-    def layers(self, names):
+    def layers(self, names: Any) -> Any:
         law, number = self.law, self.inertial
         mu, e = float(law.mu(number)), number * float(law.slope(number))
         return (Layer("grains", lambda s: Profile(dz=1.0, rho=self.inertia, U=s, dU=1.0, eta=mu, beta=e,
                                                   alpha=mu - e / 2)),)
 
-    def conditions(self, edges, names):
+    def conditions(self, edges: Any, names: Any) -> "tuple[Form, Form, Form, Form]":
         lower, upper = edges.grains
         return lower.v, lower.w, upper.v, upper.w
 
-    def state(self, layer, z, base):
+    def state(self, layer: Any, z: Any, base: Any) -> Any:
         return {**super().state(layer, z, base), "pressure": 1.0, "inertial_number": self.inertial}
 
 
@@ -76,34 +80,34 @@ class Plate(Saturated):
                                reason="at or below 1 the bed does not yield")
     grains: float = parameter(10.0, 0, look=(1.0, 1e3), meaning="z0 in grain diameters; inertia is its square")
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         super().__post_init__()
         beds.check(self.law, self.name, self.shields)
 
     @classmethod
-    def extras(cls, law):
+    def extras(cls, law: Any) -> Any:
         return beds.creep_parameter(law, surface="plate")
 
     @property
-    def _pieces(self):
+    def _pieces(self) -> Any:
         return beds.pieces(self.law, self.shields, getattr(self, "creep", 0.0))
 
     @property
-    def bottom(self):  # type: ignore[override]
+    def bottom(self) -> float:  # type: ignore[override]
         return beds.lowest(self.law, self.shields, getattr(self, "creep", 0.0))
 
-    def layers(self, names):
+    def layers(self, names: Any) -> Any:
         return beds.layers(self.law, self.shields, getattr(self, "creep", 0.0), self.grains**2)
 
-    def conditions(self, edges, names):
+    def conditions(self, edges: Any, names: Any) -> "tuple[Form, Form, Form]":
         plate = edges.bed[1]
         return *beds.below(edges, len(self._pieces), self.law.yields), plate.v, plate.w
 
-    def state(self, layer, z, base):
+    def state(self, layer: str, z: np.ndarray, base: Profile) -> dict[str, Any]:
         return {"U": base.U, "dU": base.dU, "shear_stress": self.law.rest * self.shields, "pressure": 1 - z,
                 "inertial_number": base.dU / np.sqrt(1 - z)}
 
-    def remarks(self):
+    def remarks(self) -> list[str]:
         kind = "yield surface" if self.law.yields else "rigid floor"
         return [f"{kind} at z = {self.bottom:.10g}", f"plate velocity {self._pieces[-1].top:.10g}"]
 
@@ -132,35 +136,35 @@ class Pile(Steady):
     slope_deg: float = parameter(28.0, 0, 90, look=(1.0, 89.0), meaning="inclination of the surface, degrees")
     mu_wall: float = parameter(0.3, 0, look=(0.01, 2.0), meaning="friction coefficient of the side walls")
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         super().__post_init__()
         low, high = self.law.range
         self._within("slope_deg", self.mu, low, high, f"({degrees(atan(low)):.6g}, {degrees(atan(high)):.6g})")
 
     @property
-    def mu(self):
+    def mu(self) -> float:
         return float(tan_deg(self.slope_deg))
 
     @classmethod
-    def extras(cls, law):
+    def extras(cls, law: Any) -> Any:
         return beds.creep_parameter(law, "floor of the pile", "surface", "inertial number")
 
     @property
-    def slowest(self):
+    def slowest(self) -> float:
         """Friction where the grains are at rest, or on the floor."""
         creep = getattr(self, "creep", 0.0)
         return self.law.start if self.law.yields else float(self.law.mu(creep * self.law.inverse(self.mu)))
 
     @property
-    def depth(self):
+    def depth(self) -> float:
         """Of the flowing layer."""
         return (self.mu - self.slowest) / self.mu_wall
 
     @property
-    def bottom(self):  # type: ignore[override]
+    def bottom(self) -> float:  # type: ignore[override]
         return -self.depth
 
-    def layers(self, names):
+    def layers(self, names: Any) -> Any:
         self.base_only(names)
         law = self.law
         inner = sorted((one for one in ((self.mu - float(law.mu(number))) / self.mu_wall for number in law.breaks)
@@ -170,11 +174,11 @@ class Pile(Steady):
         return tuple(sheared_layers(law, [(name, self._part(low, high)) for name, low, high in
                                           zip(names, ends, ends[1:], strict=False)]))
 
-    def _part(self, low, high):
+    def _part(self, low: float, high: float) -> Callable[..., Any]:
         """In root = sqrt(depth): the surface is a smooth end of the velocity then."""
         law, start, end = self.law, np.sqrt(low), np.sqrt(high)
 
-        def state(s):
+        def state(s: np.ndarray) -> Equilibrium:
             root = end + (start - end) * (1 - s)
             above = (start - end) * s * (start + root) + (self.depth - low)  # height above the bottom
             inertial = law.beyond(self.mu_wall * above + (self.slowest - law.start))
@@ -183,12 +187,12 @@ class Pile(Steady):
 
         return state
 
-    def state(self, layer, z, base):
+    def state(self, layer: str, z: np.ndarray, base: Profile) -> dict[str, np.ndarray]:
         depth = np.maximum(-z, 0)
         mu = self.mu - self.mu_wall * depth
         return {"U": base.U, "dU": base.dU, "shear_stress": mu * depth, "pressure": depth,
                 "inertial_number": self.law.beyond(np.maximum(mu - self.law.start, 0))}
 
-    def remarks(self):
+    def remarks(self) -> list[str]:
         return [f"depth of the flowing layer {self.depth:.10g}",
                 f"surface velocity {float(self.layers(None)[-1].profile(np.array([1.0])).U[0]):.10g}"]

@@ -8,6 +8,7 @@ perturbations fall like exponentials. A cut a thousand times as far away then ta
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import asinh, isfinite
+from typing import Any
 
 import numpy as np
 
@@ -37,13 +38,13 @@ class Stretch:
     first: float = 0.0
     rise: float = 1.0
 
-    def z(self, s):
+    def z(self, s: Any) -> Any:
         """Heights of the points s."""
         if not self.A:
             return self.low + (self.high - self.low) * s
         return self.centre + self.A * np.sinh(self.first + self.rise * s)
 
-    def slope(self, s):
+    def slope(self, s: Any) -> Any:
         """dz/ds."""
         if not self.A:
             return self.high - self.low
@@ -84,7 +85,7 @@ def limit(U: Callable[..., np.ndarray], start: float, side: int, name: str) -> f
                          f"{values[-1]:.6g} at z = {far[-2]:.3g} and {far[-1]:.3g}): give a wall or a free edge")
 
 
-def _finite(values):
+def _finite(values: Any) -> Any:
     """How many values there are before the first that is not finite."""
     wrong = np.flatnonzero(~np.isfinite(values))
     return int(wrong[0]) if len(wrong) else len(values)
@@ -110,7 +111,7 @@ def sheared(U: Callable[..., np.ndarray], low: float, high: float, limits: Seque
     return Sheared((core[0], core[1]), (ends[0], ends[1]), change, middle, spread or 1.0)
 
 
-def _heights(low, high):
+def _heights(low: Any, high: Any) -> Any:
     """Heights through the fluid: evenly between edges, at all distances from z = 0 or from an edge without."""
     if isfinite(low) and isfinite(high):
         return np.linspace(low, high, _GRID)
@@ -120,7 +121,7 @@ def _heights(low, high):
     return np.concatenate((-far[:0:-1], far))
 
 
-def _last(z, differs, side):
+def _last(z: Any, differs: Any, side: Any) -> Any:
     """The first (side 0) or last (side 1) height at which something differs from its limit."""
     where = np.flatnonzero(differs)
     if not len(where):
@@ -143,17 +144,17 @@ def stretched(U: Callable[..., np.ndarray], part: Sheared, low: float, high: flo
     return _sinh(centre, A, *_cut(part, low, high, reach))
 
 
-def _cut(part, low, high, reach):
+def _cut(part: Any, low: Any, high: Any, reach: Any) -> Any:
     """Both edges of the layer."""
     return low if isfinite(low) else part.ends[0] - reach, high if isfinite(high) else part.ends[1] + reach
 
 
-def _sinh(centre, A, low, high):
+def _sinh(centre: Any, A: Any, low: Any, high: Any) -> Any:
     first = asinh((low - centre) / A)
     return Stretch(low, high, centre, A, first, asinh((high - centre) / A) - first)
 
 
-def _best(U, part, low, high, reach):
+def _best(U: Any, part: Any, low: Any, high: Any, reach: Any) -> Any:
     """The centre and the A with which the series of U is shortest."""
     edge = low if isfinite(low) else high if isfinite(high) else part.middle
     lengths = {}

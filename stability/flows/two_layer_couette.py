@@ -1,10 +1,13 @@
 """Two liquids between sliding plates: the instability due to viscosity stratification (Yih 1967)."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from ..equations.layer import Layer, Profile
 from .base import Flow, parameter
+
+if TYPE_CHECKING:
+    import numpy as np
 
 
 @dataclass(frozen=True)
@@ -44,10 +47,10 @@ class TwoLayerCouette(Flow):
                                meaning="surface tension / (density * speed^2 * depth)")
 
     @property
-    def bottom(self):  # type: ignore[override]
+    def bottom(self) -> Any:  # type: ignore[override]
         return -self.depth_ratio
 
-    def layers(self, names):
+    def layers(self, names: Any) -> tuple[Layer, Layer]:
         m, n = self.viscosity_ratio, self.depth_ratio
         return (
             Layer("lower", lambda s: profile(s, n, 0.0, 1 / (m + n), m, self.density_ratio, self.Re),
@@ -55,12 +58,12 @@ class TwoLayerCouette(Flow):
             Layer("upper", lambda s: profile(s, 1.0, self.interface_speed, m / (m + n), 1.0, 1.0, self.Re)),
         )
 
-    def state(self, layer, z, base):
+    def state(self, layer: Any, z: Any, base: Any) -> Any:
         """Pressure of the weight above, in units of the density of the upper liquid times the squared plate speed."""
         above = -self.density_ratio * z if layer == "lower" else -z
         return {**super().state(layer, z, base), "pressure": self.gravity * (1 + above)}
 
-    def conditions(self, edges, names):
+    def conditions(self, edges: Any, names: Any) -> tuple[Any, ...]:
         """No slip; velocities and stresses meet on the displaced interface, which moves with the liquids.
 
         The jump of the shear rate displaces the velocity, that of the density and surface tension the pressure.
@@ -81,18 +84,19 @@ class TwoLayerCouette(Flow):
             plate.w,
         )
 
-    def long_wave(self, k):
+    def long_wave(self, k: "np.ndarray") -> "np.ndarray":
         """sigma = -i k (n/(m+n) + c0) with Yih's (1967) c0, relative to the interface."""
         m, n = self.viscosity_ratio, self.depth_ratio
         c0 = 2 * m * n**2 * (m - 1) * (n + 1) / ((m + n) * (m**2 + 4 * m * n**3 + 6 * m * n**2 + 4 * m * n + n**4))
         return -1j * k * (self.interface_speed + c0)
 
     @property
-    def interface_speed(self):
+    def interface_speed(self) -> float:
         return self.depth_ratio / (self.viscosity_ratio + self.depth_ratio)
 
 
-def profile(s, depth, speed, shear_rate, viscosity, density, Re):
+def profile(s: "np.ndarray", depth: float, speed: float, shear_rate: float, viscosity: float, density: float,
+            Re: float) -> Profile:
     """Linear shear above the speed at s = 0; stresses in units of those of the upper liquid at unit shear rate."""
     U = speed + shear_rate * depth * s
     return Profile(dz=depth, U=U, dU=shear_rate, rho=density * Re, eta=viscosity, beta=viscosity, stress=1 / Re)

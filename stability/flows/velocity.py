@@ -102,21 +102,21 @@ def read(name: str, value: Any) -> Any:
                          f"arrays (z, U) or (z, U, U_error) (got {shown(value)})")
 
 
-def _poiseuille(z):
+def _poiseuille(z: Any) -> Any:
     return 1 - z**2, -2 * z
 
 
-def _bickley(z):
+def _bickley(z: Any) -> Any:
     fall = np.exp(-2 * np.abs(z))
     U = 4 * fall / (1 + fall) ** 2
     return U, -2 * U * np.tanh(z)
 
 
-def _tanh(z):
+def _tanh(z: Any) -> Any:
     return np.tanh(z), _bickley(z)[0]
 
 
-def _blasius(z):
+def _blasius(z: Any) -> Any:
     """f' and its slope, with eta = z * displacement thickness in units of sqrt(nu x / U)."""
     taylor, thickness = _blasius_series()
     eta = np.minimum(z * thickness, _END)
@@ -132,7 +132,7 @@ def _blasius(z):
 
 
 @lru_cache(maxsize=1)
-def _blasius_series():
+def _blasius_series() -> Any:
     """Taylor coefficients (steps, order + 1) of f about the middles of steps, and the displacement thickness."""
     rows, state = [], (0.0, 0.0, _WALL_SLOPE)
     for _ in range(round(_END / _STEP)):
@@ -141,7 +141,7 @@ def _blasius_series():
     return np.array(rows), _END - state[0]
 
 
-def _taylor(state):
+def _taylor(state: Any) -> Any:
     """Taylor coefficients of f from f, f' and f''."""
     f = [state[0], state[1], state[2] / 2]
     for n in range(_ORDER - 2):
@@ -150,7 +150,7 @@ def _taylor(state):
     return f
 
 
-def _moved(f, step):
+def _moved(f: Any, step: Any) -> Any:
     """f, f' and f'' at a distance from where its Taylor series is given."""
     series = np.polynomial.Polynomial(f)
     return tuple(float(series.deriv(order)(step)) if order else float(series(step)) for order in range(3))

@@ -39,7 +39,7 @@ class Shape:
     centre: float | None
     L: float
 
-    def x(self, z):
+    def x(self, z: Any) -> Any:
         """x and dx/dz at heights z."""
         z = np.atleast_1d(np.asarray(z, dtype=float))
         if self.centre is None:
@@ -117,7 +117,7 @@ def smoothed(table: Any, below: bool, above: bool, name: str) -> Smoothed:
                     (low if below else None, high if above else None))
 
 
-def _shapes(z, below, above):
+def _shapes(z: Any, below: Any, above: Any) -> Any:
     """The candidates: for an unbounded fluid, several centres and lengths L."""
     low, high = z[0], z[-1]
     if not below and not above:
@@ -130,7 +130,7 @@ def _shapes(z, below, above):
             for centre in centres for width in _WIDTHS]
 
 
-def _fit(z, U, weights, shape):
+def _fit(z: Any, U: Any, weights: Any, shape: Any) -> Any:
     """The best number of terms for a shape: (criterion, shape, coefficients, P, scatter, errors of the points)."""
     n, scale = len(z), np.ptp(U)
     weight = np.ones(n) if weights is None else weights
@@ -154,14 +154,14 @@ def _fit(z, U, weights, shape):
     return criterion, shape, P @ U, P, scatter, np.full(n, scatter) if weights is None else 1 / weight
 
 
-def _rest(table, c, below, above):
+def _rest(table: Any, c: Any, below: Any, above: Any) -> Any:
     """By how much more than is allowed U still changes beyond the open ends of a table, over its whole change."""
     limits, change = C.chebval([-1.0, 1.0], c), np.ptp(table.U)
     way = [abs(table.U[side] - limits[side]) * open_ for side, open_ in ((0, below), (-1, above))]
     return max(way) / change - _LIMIT - 4 * max(table.U_error or (0.0,)) / change
 
 
-def _moves(z, U, side):
+def _moves(z: Any, U: Any, side: Any) -> Any:
     """Whether a line through the last part of a table is steep, beyond its own standard error."""
     count = max(4, int(_PART * len(z)))
     here = slice(0, count) if side == 0 else slice(-count, None)
@@ -172,7 +172,7 @@ def _moves(z, U, side):
     return abs(slope) - 4 * error > _SLOPE * np.ptp(U) / (z[-1] - z[0])
 
 
-def _no_limit(table, c, below, above, name):
+def _no_limit(table: Any, c: Any, below: Any, above: Any, name: Any) -> Any:
     sides = [side for side, open_ in ((0, below), (-1, above)) if open_]
     limits = C.chebval([-1.0, 1.0], c)
     side = max(sides, key=lambda side: abs(table.U[side] - limits[side]))

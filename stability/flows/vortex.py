@@ -1,7 +1,7 @@
 """Longitudinal vortices in granular flow down an inclined plane (Cawthorn's thesis, section 4.1)."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -39,10 +39,10 @@ class Vortex(Flow):
     Fr2: float = parameter(0.1, 0, look=(1e-3, 1e3), symbol=r"\mathrm{Fr}^2",
                            meaning="squared Froude number, thesis (4.6)")
 
-    def layers(self, names):
+    def layers(self, names: Any) -> tuple[Layer]:
         return (Layer("grains", lambda s: profile(s, self.mu, self.Fr2)),)
 
-    def conditions(self, edges, names):
+    def conditions(self, edges: Any, names: Any) -> tuple[Any, ...]:
         """No slip on the plane; no stress on the displaced surface, which moves with the grains."""
         wall, surface = edges.grains
         return (
@@ -53,24 +53,24 @@ class Vortex(Flow):
             names.rate * names.s0 - surface.w,
         )
 
-    def long_wave(self, k):
+    def long_wave(self, k: np.ndarray) -> np.ndarray:
         """sigma = -2 k^2 / (5 tan slope), thesis (4.25)."""
         return -2 * k**2 / (5 * self.mu)
 
-    def state(self, layer, z, base):
+    def state(self, layer: Any, z: Any, base: Any) -> Any:
         """The flow down the slope, U = (2/3) (1 - (1 - z)^{3/2}) as in `rollwave`; the perturbations do not feel it."""
         zeta = np.sqrt(np.maximum(1 - z, 0))
         return {"U": 2 * (1 - zeta**3) / 3, "dU": zeta, "shear_stress": self.mu * zeta**2, "pressure": zeta**2}
 
-    def remarks(self):
+    def remarks(self) -> Any:
         return ["U, dU: down the slope; the inertial number is uniform, that at which mu(I) = tan slope"]
 
     @property
-    def mu(self):
+    def mu(self) -> float:
         return float(tan_deg(self.slope_deg))
 
 
-def profile(s, mu, Fr2):
+def profile(s: np.ndarray, mu: float, Fr2: float) -> Profile:
     """Base state in zeta = sqrt(1 - z) = 1 - s: every coefficient of the equations is a polynomial.
 
     Effective and tangent viscosity across the slope are both mu p / shear rate = mu sqrt(1 - z).

@@ -18,8 +18,10 @@ equation d^2 omega / dx^2 = x omega. Two methods, which meet where both are exac
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache, partial
+from typing import Any
 
 import numpy as np
 
@@ -52,7 +54,7 @@ class Response:
     error: np.ndarray
 
 
-def response(k, Re, depth=np.inf):
+def response(k: np.ndarray, Re: float, depth: float = np.inf) -> "Response":
     """Response R(k, Re, depth) of the wall's shear stress to the wall's height: a `Response`.
 
     `k` is a wavenumber or a 1-D array of them. Checked over 1e-6 <= k <= 1e3, 1e-4 <= Re <= 1e6,
@@ -77,22 +79,22 @@ def response(k, Re, depth=np.inf):
     return Response(k[()], Re, depth, value, by_k / k, by_Re / Re, by_depth / depth, error.real)
 
 
-def boundary_layer(k, Re):
+def boundary_layer(k: Any, Re: Any) -> Any:
     """R as k^2/Re -> 0 without a lid: -(3^(1/3)/Gamma(2/3)) (i k Re)^(1/3), Cawthorn (4.71)."""
     return -(3 ** (1 / 3) / math.gamma(2 / 3)) * _airy_scale(k, Re)
 
 
-def shallow(k, Re, depth):
+def shallow(k: Any, Re: Any, depth: Any) -> Any:
     """R as k depth -> 0 and k Re depth^3 -> 0: -4/depth - i k depth^2 Re/30, Cawthorn (4.83)."""
     return -4 / depth - 1j * k * depth**2 * Re / 30
 
 
-def short_wave(k, Re):
+def short_wave(k: Any, Re: Any) -> Any:
     """R as k^2/Re -> inf without a lid: -2 k - i Re/(2 k), Stokes flow and its first correction by inertia."""
     return -2 * k - 0.5j * Re / k
 
 
-def _check(k, Re, depth):
+def _check(k: np.ndarray, Re: float, depth: float) -> None:
     """Raise ParameterError, naming the parameter and its value, unless `response` is defined."""
     if k.ndim > 1:
         raise ParameterError(f"k must be a number or a 1-D array (got shape {k.shape})")
@@ -105,7 +107,7 @@ def _check(k, Re, depth):
         raise ParameterError(f"depth must be positive, inf for no lid (got {depth})")
 
 
-def _airy_scale(k, Re):
+def _airy_scale(k: np.ndarray, Re: float) -> np.ndarray:
     """f = (i k Re)^(1/3)."""
     return np.cbrt(k) * np.cbrt(Re) * np.exp(1j * np.pi / 6)
 
@@ -119,7 +121,7 @@ def _airy_scale(k, Re):
 #     c = Int B exp(-k z) dz / (f Int B sinh(k z)/k dz).
 
 
-def _layers(lid, k, Re, depth):
+def _layers(lid: Callable[..., Any], k: np.ndarray, Re: float, depth: float) -> tuple[Any, ...]:
     """Rows R, k dR/dk, Re dR/dRe, depth dR/d(depth), error, shaped like `k`; `lid` is `_lid` or `_no_lid`."""
     f = _airy_scale(k, Re)
     q = k / f
@@ -142,12 +144,12 @@ def _layers(lid, k, Re, depth):
     return R, by_k, by_Re, 3 * third * W_eta, error
 
 
-def _no_lid(f, q, depth, tau, weight):
+def _no_lid(f: np.ndarray, q: np.ndarray, depth: float, tau: np.ndarray, weight: np.ndarray) -> tuple[float, ...]:
     """W and its derivatives, as from `_lid`, where the lid is out of reach."""
     return 0.0, 0.0, 0.0, 0.0
 
 
-def _lid(f, q, depth, tau, weight):
+def _lid(f: Any, q: Any, depth: Any, tau: Any, weight: Any) -> Any:
     """W, q dW/dq, eta dW/d(eta) and the error of W, each shaped like `q`; eta = f depth.
 
     `tau`, `weight` average over the bed's layer, x = q^2. At the distance d below the lid B = Ai(y + s d/depth)
@@ -181,7 +183,7 @@ def _lid(f, q, depth, tau, weight):
     return W, W_q + W * S_q / S, W_eta, abs(W) * _error(weight, down) + EPS * abs(S)
 
 
-def _saddle(p, shift, scale):
+def _saddle(p: np.ndarray, shift: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, ...]:
     """Nodes tau = t - p and weights of the average over exp(t^3/3 - p^2 t); each (p.size, NODES.size).
 
     On the straight line tau = shift + i scale v past the saddle tau = 0 the trapezoidal rule in v converges
@@ -192,11 +194,11 @@ def _saddle(p, shift, scale):
     return tau, weight / weight.sum(axis=1, keepdims=True)
 
 
-def _mean(weight, g):
+def _mean(weight: np.ndarray, g: np.ndarray) -> np.ndarray:
     return np.einsum("...j,...j->...", weight, g)
 
 
-def _error(weight, g):
+def _error(weight: np.ndarray, g: np.ndarray) -> np.ndarray:
     """Relative error of <g>: rounding, and the square of what leaving out every second node changes."""
     coarse = _mean(weight[:, ::2], g[:, ::2]) / weight[:, ::2].sum(axis=1)
     return 8 * EPS + abs(coarse / _mean(weight, g) - 1) ** 2
@@ -210,7 +212,7 @@ def _error(weight, g):
 # depth R = -a(Psi, Psi*), stationary in both, so that its derivatives are those of a at fixed Psi, Psi*.
 
 
-def _gap(k, Re, depth):
+def _gap(k: Any, Re: Any, depth: Any) -> Any:
     """Rows R, k dR/dk, Re dR/dRe, depth dR/d(depth), error of a thin gap; each shaped like `k`."""
     bend, slope, value, moment, shear = matrices = _clamped_basis()
     K = ((k * depth) ** 2)[:, None, None]
@@ -231,14 +233,14 @@ def _gap(k, Re, depth):
     return np.array([g, by_kappa + by_F, by_F, by_kappa + 3 * by_F - g, rounding + truncation]) / depth
 
 
-def _galerkin(form):
+def _galerkin(form: np.ndarray) -> np.ndarray:
     """Coefficients (n, MODES + 1), the first one 1, with form[:, i] . coefficients = 0 for i >= 1."""
     rest = np.linalg.solve(form[:, 1:, 1:], -form[:, 1:, :1])[..., 0]
     return np.concatenate([np.ones((len(rest), 1)), rest], axis=1)
 
 
 @lru_cache(maxsize=1)
-def _clamped_basis():
+def _clamped_basis() -> np.ndarray:
     """Matrices Int e_i'' e_j'', e_i' e_j', e_i e_j, z e_i e_j, z e_i e_j'' dz over 0 < z < 1; i, j = 0..MODES.
 
     e_0 = z (1 - z)^2 carries Psi'(0) = 1. The others are clamped at both ends and e_j'' are the

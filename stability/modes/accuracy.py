@@ -1,6 +1,7 @@
 """How accurate an answer has to be: one value that travels from the question down to the solver."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 from ..checks import check_integer, check_tolerance
 
@@ -26,13 +27,16 @@ class Accuracy:
         return tuple(degree for degree in DEGREES if degree <= self.max_degree) or (self.max_degree,)
 
     @property
-    def settings(self) -> dict[str, float | int]:
+    def settings(self) -> dict[str, Any]:
         """What the header of a result says of it; the keyword arguments of the public functions."""
         return {"tolerance": self.tolerance, "max_degree": self.max_degree}
 
     def rougher(self, tolerance: float) -> "Accuracy":
         """Return the same, but no more accurate than this."""
         return replace(self, tolerance=max(self.tolerance, tolerance))
+
+
+USUAL = Accuracy()
 
 
 def check_accuracy(tolerance: float, max_degree: int,

@@ -8,7 +8,9 @@ The surface mode starts in long waves, where it obeys the limit that its flow st
 wavenumber that is the flow's own.
 """
 
+from collections.abc import Iterator
 from math import copysign, log
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +19,11 @@ from ..flows.sources import shipped
 from .foresight import Foresight
 from .solver import transfer
 from .tracking import Walk
+
+if TYPE_CHECKING:
+    from ..flows.base import Flow
+    from .mode import Mode
+    from .solver import Solver
 
 _ROUGH = 1e-4  # tolerance of the walk; what is asked for is refined to full accuracy
 _FIRST, _FACTOR, _TRIES = 0.04, 5.0, 30  # wavenumbers at which the long-wave limit is sought: each a part of the last
@@ -36,40 +43,40 @@ class Branch:
     that were looked at before the start was found.
     """
 
-    def __init__(self, solver, start, rough=None, seen=()):
+    def __init__(self, solver: "Solver", start: "Mode", rough: "Solver | None" = None, seen: Any = ()) -> None:
         self.solver, self.start, self._seen = solver, start, seen
         rough = rough or solver.rough(_ROUGH)
         self._walks = {side: Walk(rough, start, solver) for side in (1, -1)}
         self.lost = {}
 
     @property
-    def collisions(self):
+    def collisions(self) -> tuple[Any, ...]:
         """The collisions met so far, by rising k."""
         return tuple(sorted((one for walk in self._walks.values() for one in walk.collisions), key=lambda one: one.k))
 
     @property
-    def encounters(self):
+    def encounters(self) -> tuple[Any, ...]:
         """Where another mode nearly met this one so far, by rising k."""
         return tuple(walk.encounter for walk in self._walks.values() if walk.encounter)[::-1]
 
     @property
-    def uneventful(self):
+    def uneventful(self) -> bool:
         """Whether no other mode was met and nothing lost so far."""
         return not (self.collisions or self.encounters or self.lost)
 
     @property
-    def segments(self):
+    def segments(self) -> "list[list[Mode]]":
         """Lists of nodes by rising k, without a collision inside."""
         down, up = self._walks[-1].segments, self._walks[1].segments
         whole = [*down[0][:0:-1], *up[0]]
         return [*(part[::-1] for part in down[:0:-1]), whole, *up[1:]]
 
     @property
-    def known(self):
+    def known(self) -> "dict[float, Mode]":
         """{k: mode} of all that was computed on the way, roughly."""
         return {mode.k: mode for part in (self._seen, *self.segments) for mode in part}
 
-    def reach(self, k):
+    def reach(self, k: float) -> bool:
         """Walk until k lies behind; return whether it does."""
         side = self._side(k)
         walk = self._walks[side]
@@ -80,11 +87,11 @@ class Branch:
                 self.lost[side] = reason
         return side * log(k / walk.now.k) <= 0
 
-    def why_lost(self, k):
+    def why_lost(self, k: Any) -> Any:
         """Why the walk does not reach k."""
         return str(self.lost[self._side(k)])
 
-    def at(self, wavenumbers):
+    def at(self, wavenumbers: np.ndarray) -> "tuple[dict[float, Mode], dict[Any, Any]]":
         """Return {k: mode} at the wavenumbers reached, and {k: reason} at the others."""
         wavenumbers = np.asarray(wavenumbers, dtype=float).tolist()
         for k in (min(wavenumbers), max(wavenumbers)):
@@ -101,10 +108,10 @@ class Branch:
                 found[k] = mode
         return found, lost
 
-    def _side(self, k):
+    def _side(self, k: float) -> int:
         return int(copysign(1, log(k / self.start.k)))
 
-    def _between(self, nodes, index, k, known=None):
+    def _between(self, nodes: Any, index: Any, k: Any, known: Any = None) -> Any:
         """The mode at k next to its interpolation, or by a walk from the node before; the reason where it is lost.
 
         `known` is one near by that is resolved, if there is one: it tells which degree to try.
@@ -123,13 +130,13 @@ class Branch:
         except ModeLost as reason:
             return reason
 
-    def _solved(self, k, rate, vectors):
+    def _solved(self, k: float, rate: complex, vectors: tuple[int, np.ndarray, np.ndarray]) -> "Mode | None":
         try:
             return self.solver.solve(k, rate, vectors)
         except ModeLost:
             return None
 
-    def _together(self, wavenumbers):
+    def _together(self, wavenumbers: list[float]) -> "dict[float, Mode]":
         """Modes at many wavenumbers: of those between two nodes of the walk some are refined one by one, and the others
         together, next to the interpolation between those."""
         gaps = {}
@@ -149,7 +156,7 @@ class Branch:
             found |= self._refined(finer, rest)
         return found
 
-    def _refined(self, finer, rest):
+    def _refined(self, finer: "list[Mode]", rest: list[Any]) -> dict[Any, Any]:
         """{k: mode} for each of the `rest` (k, nodes of the walk, index of the one before) next to the interpolation
         between the modes `finer`; what does not settle there is refined alone."""
         batches, found, last = {}, {}, finer[-1] if finer else None
@@ -168,12 +175,12 @@ class Branch:
         return found | {k: self._between(nodes, index, k, last) for k, nodes, index in rest if k not in found}
 
 
-def _near(mode, rate, node):
+def _near(mode: "Mode", rate: complex, node: "Mode") -> bool:
     """Whether a mode is where the interpolation of its rate from `node` and the next one expects it."""
     return abs(mode.rate - rate) < _DRIFT * (abs(rate) + abs(node.rate - rate))
 
 
-def rough_solver(solver, known=None):
+def rough_solver(solver: Any, known: Any = None) -> Any:
     """Return the solver of a walk; `known` are modes of a flow that is nearly the same, {k: mode}."""
     rough = solver.rough(_ROUGH)
     if known:
@@ -181,7 +188,7 @@ def rough_solver(solver, known=None):
     return rough
 
 
-def surface_branch(solver, known=None):
+def surface_branch(solver: "Solver", known: "dict[float, Mode] | None" = None) -> "Branch":
     """Return the branch of the slow surface mode of `solver.flow`; raise ModeLost where it has no long-wave limit.
 
     `known` are modes of a flow that is nearly the same, {k: mode}.
@@ -190,7 +197,7 @@ def surface_branch(solver, known=None):
     return Branch(solver, surface_mode(rough, seen=seen), rough, seen)
 
 
-def surface_mode(solver, highest=_FIRST, seen=None):
+def surface_mode(solver: "Solver", highest: float = _FIRST, seen: list[Any] | None = None) -> "Mode":
     """Return the slow surface mode at a wavenumber <= `highest` from which on it obeys its long-wave limit.
 
     Value and logarithmic slope must agree there, and again at a fifth and a twenty-fifth of it, no worse: another mode
@@ -218,7 +225,7 @@ def surface_mode(solver, highest=_FIRST, seen=None):
     raise ModeLost(f"{solver.flow}: no mode obeys the long-wave limit down to k = {k:.1e}")
 
 
-def _laws(solver, highest):
+def _laws(solver: "Solver", highest: float) -> Iterator[Any]:
     """Yield the wavenumbers that are tried, from the highest down, with the long-wave limit and its exponent."""
     tried = highest / _FACTOR ** np.arange(_TRIES)
     for first in range(0, _TRIES, _CONFIRMED):
@@ -229,7 +236,7 @@ def _laws(solver, highest):
         yield from zip(few.tolist(), limits, np.log(ahead / limits) / log(1.01), strict=True)
 
 
-def _check_law(flow, agreeing):
+def _check_law(flow: "Flow", agreeing: list[tuple[Any, ...]]) -> None:
     """Refuse a law, given by a flow from elsewhere, to which the mode does not tend.
 
     Its relative difference from the law falls like a power of k, by the same factor from each wavenumber to the next:
@@ -246,7 +253,7 @@ def _check_law(flow, agreeing):
                              f"{limit:.6g}, the mode {mode.sigma:.6g}, and comes no closer as k falls")
 
 
-def _glance(solver, k, limit, exponent, above=None):
+def _glance(solver: Any, k: Any, limit: Any, exponent: Any, above: Any = None) -> Any:
     """The mode next to the long-wave limit, and how far from it, relative; None and infinity where none settles.
 
     `above` is the one that was found at the wavenumber before, if any.
@@ -259,11 +266,11 @@ def _glance(solver, k, limit, exponent, above=None):
     return mode, _distance(mode, limit, exponent)
 
 
-def _distance(mode, limit, exponent):
+def _distance(mode: "Mode", limit: complex, exponent: complex) -> float:
     return max(abs(mode.sigma / limit - 1), abs(mode.k * mode.slope / mode.sigma - exponent))
 
 
-def _intervals(segments, wavenumbers):
+def _intervals(segments: "list[list[Mode]]", wavenumbers: list[float]) -> list[tuple[Any, ...]]:
     """For each wavenumber the segment that contains it, or the one that ends nearest to it, and the node before it."""
     logs, t = [np.log([node.k for node in nodes]) for nodes in segments], np.log(wavenumbers)
     outside = np.array([np.maximum(np.maximum(ends.min() - t, t - ends.max()), 0) for ends in logs])
@@ -279,7 +286,8 @@ def _intervals(segments, wavenumbers):
     return places
 
 
-def interpolated(solver, nodes, index, t, degree):
+def interpolated(solver: "Solver", nodes: "list[Mode]", index: int, t: np.ndarray,
+                 degree: int) -> tuple[np.ndarray, ...]:
     """Rates (cubic, values and slopes of two nodes) and vectors (cubic, four nodes) at log k = t (points,)."""
     here, there = nodes[index], nodes[index + 1]
     h = log(there.k / here.k)
@@ -297,7 +305,7 @@ def interpolated(solver, nodes, index, t, degree):
     return rates, *(_blend(weights, rows, index - first) for rows in zip(*vectors, strict=True))
 
 
-def _blend(weights, vectors, reference):
+def _blend(weights: np.ndarray, vectors: tuple[Any, ...], reference: int) -> np.ndarray:
     """Weighted sums (points, size) of eigenvectors, each first given the scale of the one at `reference`."""
     base = vectors[reference]
     size = np.vdot(base, base)

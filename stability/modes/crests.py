@@ -6,11 +6,12 @@ faster than `_DEPTH` times the waves travel are taken from dense spectra whose c
 to both neighbours; a crest lies where the slope turns on the way.
 """
 
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 from math import ceil, exp, log
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,6 +25,12 @@ from .memory import branch_of
 from .response import error_of_maximum
 from .short_waves import ill_posed_somewhere
 from .tracking import Walk
+
+if TYPE_CHECKING:
+    from ..flows.base import Flow
+    from .branch import Branch
+    from .mode import Mode
+    from .solver import Solver
 
 SEARCH = 1e-2, 100.0  # range of k; with a surface mode its lower end moves down until growth is a power of k
 ROUGH = 1e-4  # tolerance of the look: small systems find the brackets
@@ -69,14 +76,14 @@ class Maximum:
         return self.mode.growth_rate
 
 
-def crest_mode(flow):
+def crest_mode(flow: "Flow") -> str:
     """Whose crests are meant unless told otherwise: those of all modes, "leading", or in ill-posed flows "surface"."""
     if not flow.has_surface_mode():
         return "leading"
     return "surface" if ill_posed_somewhere(flow) else "leading"
 
 
-def search_of(flow, mode):
+def search_of(flow: "Flow", mode: str) -> tuple[float, ...]:
     """The range of k that is searched unless told otherwise: up to waves short beside the thinnest layer."""
     if mode != "leading":
         return SEARCH
@@ -94,7 +101,7 @@ class Outlook:
     trouble: str | None
 
 
-def surface_look(solver, low, high, growing=False):
+def surface_look(solver: "Solver", low: float, high: float, growing: bool = False) -> "Outlook":
     """Look along the surface mode, from where growth is a power of k to k = high; `low` bounds where that is sought.
 
     Where only `growing` crests are wanted, there is no look between nodes that decay clearly. Raises ModeLost where
@@ -116,7 +123,7 @@ def surface_look(solver, low, high, growing=False):
     return Outlook(brackets, (nodes[:1], [] if lost else nodes[-1:]), lost)
 
 
-def look(solver, low, high):
+def look(solver: "Solver", low: float, high: float) -> "Outlook":
     """Look at every mode that decays slowly or grows, low <= k <= high, each symmetry class by itself."""
     parts = [_look(half, low, high) for half in solver.halves]
     trouble = [part.trouble for part in parts if part.trouble]
@@ -124,7 +131,7 @@ def look(solver, low, high):
     return Outlook([pair for part in parts for pair in part.brackets], (first, last), trouble[0] if trouble else None)
 
 
-def _look(solver, low, high):
+def _look(solver: "Solver", low: float, high: float) -> "Outlook":
     high = min(high, solver.flow.shortest())
     if not low < high:
         return Outlook([], ([], []), None)
@@ -143,7 +150,7 @@ def _look(solver, low, high):
     return Outlook(brackets, (columns[0] or [], columns[-1] or []), trouble)
 
 
-def depth_of(flow):
+def depth_of(flow: "Flow") -> Callable[..., Any]:
     """The decay rate, in units of the rates, down to which modes are looked at, as a function of k.
 
     In terms of wave speeds: `_DEPTH` of the differences of speed, or the thickness of a viscous layer in these units
@@ -156,7 +163,7 @@ def depth_of(flow):
     return lambda k: speed * min(_DEPTH, (viscosity / (k * speed)) ** (1 / 3))
 
 
-def _ways(solver, here, there):
+def _ways(solver: "Solver", here: list[Any], there: list[Any]) -> Iterator[Any]:
     """Nodes by rising k of every mode from one wavenumber to the next: both ends where rates and slopes leave no doubt
     which belong together, else as followed there, or back where none arrived."""
     pairs = _partners(here, there)
@@ -177,7 +184,7 @@ def _ways(solver, here, there):
                 yield [node for part in walk.segments for node in part][::-1]
 
 
-def _partners(here, there):
+def _partners(here: list[Any], there: list[Any]) -> list[Any]:
     """Pairs of modes at two wavenumbers whose rates and slopes fit one curve, and no other pair nearly as well."""
     if not here or not there:
         return []
@@ -194,14 +201,14 @@ def _partners(here, there):
     return pairs
 
 
-def _heard(solver, node):
+def _heard(solver: "Solver", node: "Mode") -> "Mode":
     """The node, computed by a finer solver where its slope of growth does not stand out from its error."""
     if abs(node.slope.real) > _AUDIBLE * node.slope_error:
         return node
     return solver.refined(node)
 
 
-def _brackets(solver, left, right, halvings=_FINEST):
+def _brackets(solver: "Solver", left: "Mode", right: "Mode", halvings: int = _FINEST) -> list[Any]:
     """Pairs of modes between two nodes with a crest in between, halving what is too uneven to judge by its ends."""
     a, b = (mode.k * mode.slope.real for mode in (left, right))
     h, rise = log(right.k / left.k), right.growth_rate - left.growth_rate
@@ -213,21 +220,21 @@ def _brackets(solver, left, right, halvings=_FINEST):
     return [(left, right)] if a > 0 >= b else []
 
 
-def may_grow(left, right):
+def may_grow(left: "Mode", right: "Mode") -> bool:
     """Whether growth between the two ends of a bracket may exceed 0, by generous tangents."""
     a, b = (mode.k * mode.slope.real for mode in (left, right))
     h = log(right.k / left.k)
     return max(left.growth_rate + h * a, right.growth_rate - h * b) > 0
 
 
-def _decays(left, right):
+def _decays(left: "Mode", right: "Mode") -> bool:
     """Whether growth between two nodes is so far below 0 that slopes at both ends, taken upwards, do not reach it."""
     h = log(right.k / left.k)
     rises = (h * mode.k * (abs(mode.slope.real) + _AUDIBLE * mode.slope_error) for mode in (left, right))
     return max(left.growth_rate + left.error, right.growth_rate + right.error) + sum(rises) < 0
 
 
-def _long_waves(branch, low):
+def _long_waves(branch: "Branch", low: float) -> float:
     """A wavenumber <= low from which down, for a decade, growth is what it is as k -> 0: no crest lies lower."""
     k = _last_regime(branch.solver.flow, low)
     growth, power = _as_k_vanishes(branch, k)
@@ -243,7 +250,7 @@ def _long_waves(branch, low):
     raise ModeLost(f"{branch.solver.flow}: growth follows no power of k down to k = {k:.1e}")
 
 
-def _as_k_vanishes(branch, k):
+def _as_k_vanishes(branch: "Branch", k: float) -> tuple[Callable[..., Any], float]:
     """Growth as a power of k, (function of k, the power), at a wavenumber far below k."""
     solver, start = branch.solver, branch.start
     k = min(_VANISHING, k / _DECADE**3)
@@ -255,7 +262,7 @@ def _as_k_vanishes(branch, k):
     return lambda other: mode.growth_rate * (other / k) ** power, power
 
 
-def _last_regime(flow, low):
+def _last_regime(flow: "Flow", low: float) -> float:
     """The largest wavenumber low / 10^j below which the long-wave law keeps its powers of k."""
     k = low / _DECADE ** np.arange(_DECADES)
     with np.errstate(all="ignore"):
@@ -266,7 +273,7 @@ def _last_regime(flow, low):
     return float(k[changed[-1] + 1 if len(changed) else 0])
 
 
-def crest(solver, left, right):
+def crest(solver: "Solver", left: "Mode", right: "Mode") -> "Maximum":
     """The `Maximum` between two modes that bracket it: secants of the analytic slope, kept inside the bracket.
 
     The curvature is that of the parabola through the last three slopes, as long as those are apart.
@@ -293,19 +300,19 @@ def crest(solver, left, right):
     return Maximum(now.k, error, now, status, measured)
 
 
-def _bend(one, other):
+def _bend(one: "Mode", other: "Mode") -> float:
     """Mean curvature of growth between two modes."""
     return (other.slope.real - one.slope.real) / (other.k - one.k)
 
 
-def middle_of(solver, left, right):
+def middle_of(solver: "Solver", left: "Mode", right: "Mode") -> "tuple[Mode, float]":
     """A mode near the crest between two that bracket it, and the curvature of growth in log k there, roughly."""
     k = _hermite(left, right)
     a, b = (mode.k * mode.slope.real for mode in (left, right))
     return _moved(solver, left if k - left.k < right.k - k else right, k)[0], (b - a) / log(right.k / left.k)
 
 
-def _moved(solver, near, k, twice=False):
+def _moved(solver: "Solver", near: "Mode", k: float, twice: bool = False) -> "tuple[Mode, complex]":
     """The mode `near` at a wavenumber close by, and its slope; from the vectors before they were refined once more,
     where that is done `twice`: the difference shows how far rounding scatters slopes where another mode is near.
     """
@@ -319,7 +326,7 @@ def _moved(solver, near, k, twice=False):
     return (solver.solve(k, mode.rate, (mode.degree, mode.x, mode.y)) if twice else mode), mode.slope
 
 
-def _hermite(low, high):
+def _hermite(low: "Mode", high: "Mode") -> float:
     """Zero of the growth slope between two modes, from the cubic through values and slopes in log k."""
     a, b = low.k * low.slope.real, high.k * high.slope.real
     h = log(high.k / low.k)

@@ -7,17 +7,21 @@ they are.
 """
 
 from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..equations.layer import FIELDS
 from ..numerics import chebyshev
 
+if TYPE_CHECKING:
+    from .solver import Solver
+
 _SAFETY = 2.0
 _UNBOUND = 1e-3  # effect of the cut, relative to sigma, from which on a mode that decays is taken for the cut's own
 
 
-def neglected(solver, k, degree, eigen):
+def neglected(solver: "Solver", k: Any, degree: int, eigen: Any) -> Any:
     """Bound of the error of sigma from what the conditions at cuts leave out."""
     pencil, flow = solver.pencil(degree), solver.flow
     names = SimpleNamespace(k=k, rate=complex(eigen.rate))
@@ -30,13 +34,13 @@ def neglected(solver, k, degree, eigen):
     return float(_SAFETY * solver.width(k) * total)
 
 
-def _edge(pencil, layer, end, x):
+def _edge(pencil: Any, layer: Any, end: Any, x: Any) -> Any:
     """The fields of a mode at an edge of a layer."""
     ends = chebyshev.at(np.array([float(end)]), pencil.degree)[0]
     return SimpleNamespace(**{field: ends @ x[pencil.columns[f"{layer}.{field}"]] for field in FIELDS})
 
 
-def belongs_to_cut(solver, mode):
+def belongs_to_cut(solver: "Solver", mode: Any) -> Any:
     """Whether a mode decays and would not be there, or elsewhere, without a cut."""
     flow = solver.flow
     if not flow.unbounded or mode.growth_rate >= 0:

@@ -9,7 +9,7 @@ nothing is filtered by size.
 
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from weakref import proxy
 
 import numpy as np
@@ -17,13 +17,16 @@ from scipy.linalg import qr
 
 from ..errors import ModeLost
 
+if TYPE_CHECKING:
+    from .solver import Solver
+
 _LARGEST = 1300  # unknowns of a dense problem
 _SHIFT = 0.01 - 0.013j  # tried when the pencil is singular at rate 0
 _SINGULAR = 1e14  # ratio of the two largest theta above which rate 0 is taken for an eigenvalue
 _SMALL = 10  # degree of the pencil whose finite eigenvalues are counted
 
 
-def dense_degrees(solver, first, step=1):
+def dense_degrees(solver: "Solver", first: int, step: int = 1) -> list[int]:
     """Degrees for dense problems, from rung `first` on, as far as one takes no longer than about a second."""
     layers = len(solver.assembly.system.fields)
     affordable = [degree for degree in solver.degrees if degree * layers <= _LARGEST] or solver.degrees[:1]
@@ -31,7 +34,7 @@ def dense_degrees(solver, first, step=1):
     return chosen if chosen[-1:] == list(affordable[-1:]) else [*chosen, affordable[-1]]
 
 
-def finite_rates(solver, degree, symbols):
+def finite_rates(solver: "Solver", degree: int, symbols: dict[str, tuple[Any, ...]]) -> np.ndarray:
     """Return the finite eigenvalues of the pencil of this degree, all of them, by decreasing real part."""
     pencil, count = solver.pencil(degree), _finite_count(solver, degree)
     theta, shift = _theta(pencil, pencil.weights(symbols).value, count)
@@ -42,7 +45,7 @@ def finite_rates(solver, degree, symbols):
     return rates[np.argsort(-rates.real)]
 
 
-def _theta(pencil, weights, rank=None):
+def _theta(pencil: Any, weights: Any, rank: Any = None) -> Any:
     """Eigenvalues of G by decreasing size, and the shift; only `rank` of them if G is known to have that rank."""
     rows = pencil.rate_rows
     columns = np.zeros((pencil.size, len(rows)))
@@ -60,7 +63,7 @@ def _theta(pencil, weights, rank=None):
     return theta, shift
 
 
-def _eigenvalues(g, rank):
+def _eigenvalues(g: np.ndarray, rank: int | None) -> np.ndarray:
     """Eigenvalues of g; the non-zero ones alone from g = q r, which has those of r q."""
     if rank is None or rank >= len(g):
         return np.linalg.eigvals(g)
@@ -68,7 +71,7 @@ def _eigenvalues(g, rank):
     return np.linalg.eigvals(r[:rank] @ q[order, :rank])
 
 
-def _finite_count(solver, degree):
+def _finite_count(solver: "Solver", degree: int) -> int:
     """How many eigenvalues are finite: one per degree for every layer that carries the rate, plus a constant."""
     system = solver.assembly.system
     count = _smallest_count(_Structure(system.pattern, proxy(solver.assembly)))
@@ -84,7 +87,7 @@ class _Structure:
 
 
 @lru_cache(maxsize=32)
-def _smallest_count(structure):
+def _smallest_count(structure: "_Structure") -> int:
     """Finite eigenvalues at the smallest degree: read off the gap in theta with all symbols 1."""
     small = structure.assembly.pencil(_SMALL)
     sizes = np.abs(_theta(small, np.ones(len(small.parts)))[0])

@@ -145,6 +145,6 @@ def _heights(z: Any) -> np.ndarray:
     return np.array(numbers, dtype=float).reshape(array.shape)
 
 
-def _velocities(base, s):
+def _velocities(base: Any, s: Any) -> Any:
     """What turns scaled unknowns into velocities and viscous stresses."""
     return base.g, base.eta * base.g, base.stress

@@ -12,6 +12,7 @@ equations than it would for a normal operator.
 from dataclasses import dataclass
 from functools import lru_cache
 from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.polynomial import chebyshev as C
@@ -20,6 +21,11 @@ from numpy.polynomial import legendre as L
 from ..equations.layer import resolved
 from ..numerics import chebyshev
 from .solver import Solver
+
+if TYPE_CHECKING:
+    from ..equations.layer import Profile
+    from ..equations.pencil import Pencil
+    from ..equations.system import System
 
 _RULES = 16  # of quadrature that are kept, for degrees in use: some megabytes at most
 _SPARE = 24  # Gauss nodes beyond the degree: 3 are enough for the flows of this package
@@ -46,7 +52,7 @@ class Energy:
     width: float
 
 
-def energy(solver, k, degree):
+def energy(solver: Solver, k: float, degree: int) -> "Energy":
     """Return the `Energy` of the vectors of one degree at wavenumber k.
 
     `k` is in 1/L. Raises what the profiles of the flow raise, such as NotSmooth.
@@ -82,7 +88,7 @@ def energy(solver, k, degree):
     return Energy(np.vstack(state), np.vstack(adjoint), width)
 
 
-def condition_numbers(modes, solver=None):
+def condition_numbers(modes: tuple[Any, ...], solver: Solver | None = None) -> np.ndarray:
     """Return the condition numbers (modes,) of eigenvalues of one flow, or of its symmetry classes, in the energy norm.
 
     Half the domain gives the same number as the whole. `solver` is that of the flow, if there is one already.
@@ -107,27 +113,27 @@ def condition_numbers(modes, solver=None):
     return np.array(found)
 
 
-def _densities(base, s):
+def _densities(base: "Profile", s: np.ndarray) -> tuple[Any, ...]:
     """What squares of velocities are multiplied by in the energy of a state and of its adjoint."""
     density = base.rho * base.dz
     return base.stress * density * base.g**2, base.stress * density, density / base.stress
 
 
 @lru_cache(maxsize=_RULES)
-def _gauss(degree, length):
+def _gauss(degree: int, length: int) -> tuple[np.ndarray, ...]:
     """Nodes and weights on 0 <= s <= 1, enough for squares of series times a density of this many terms."""
     nodes, weights = L.leggauss(degree + max(_SPARE, length // 2 + 1))
     return (1 + nodes) / 2, weights / 2
 
 
 @lru_cache(maxsize=_RULES)
-def _values(degree, length):
+def _values(degree: int, length: int) -> np.ndarray:
     """The Chebyshev polynomials up to a degree at those nodes, (nodes, degree + 1)."""
     return chebyshev.at(_gauss(degree, length)[0], degree)
 
 
 @lru_cache(maxsize=_RULES)
-def _dual(degree, length, count):
+def _dual(degree: int, length: int, count: int) -> np.ndarray:
     """Matrix (nodes, count) from y to the function f at the nodes with y^H r = integral of conj(f) r, r in T_j."""
     nodes, weights = _gauss(degree, length)
     legendre = L.legvander(2 * nodes - 1, count - 1) * np.sqrt(2 * np.arange(count) + 1)
@@ -135,13 +141,13 @@ def _dual(degree, length, count):
     return np.linalg.solve(change, legendre.T).T
 
 
-def _spread(pencil, places, block):
+def _spread(pencil: "Pencil", places: np.ndarray, block: np.ndarray) -> np.ndarray:
     full = np.zeros((len(block), pencil.size), block.dtype)
     full[:, places] = block
     return full
 
 
-def _kinematic(system, pencil, surface):
+def _kinematic(system: "System", pencil: "Pencil", surface: str) -> np.ndarray:
     """The rows (1, size) of y that multiply rate * surface in B, with their factors."""
     factors = np.zeros((1, pencil.size))
     for row, terms in zip(pencil.rows["conditions"], system.conditions, strict=True):

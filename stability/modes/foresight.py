@@ -5,11 +5,17 @@ other all at once, which costs a third of solving for each in turn; its walk the
 judged as if it had found them itself: what is foreseen saves work and decides nothing.
 """
 
+from collections.abc import Iterator
 from itertools import pairwise
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .solver import transfer
+
+if TYPE_CHECKING:
+    from .mode import Mode
+    from .solver import Solver
 
 _CLOSE = 0.05  # largest relative distance of a rate from the one expected, if the walk knows what to expect
 _SIMILAR = 1.5  # largest ratio of degrees that are made the same
@@ -18,17 +24,17 @@ _SIMILAR = 1.5  # largest ratio of degrees that are made the same
 class Foresight:
     """Modes of the flow of a `solver` next to those `known`, {k: mode}, of another flow."""
 
-    def __init__(self, solver, known):
+    def __init__(self, solver: "Solver", known: "dict[float, Mode]") -> None:
         solver.prepare(np.array(list(known)))
         self._likely = {mode.k: mode for mode in _refined(solver, list(known.values()))}
 
-    def at(self, k, rate, part=_CLOSE):
+    def at(self, k: float, rate: complex, part: float = _CLOSE) -> "Mode | None":
         """The mode foreseen at k if its rate is this one to a small part of it, or None."""
         mode = self._likely.get(k)
         return mode if mode and abs(mode.rate - rate) < part * abs(rate) else None
 
 
-def _refined(solver, known):
+def _refined(solver: "Solver", known: "list[Mode]") -> Iterator[Any]:
     for degree, group in _groups(known):
         if group[0].x.shape != (solver.pencil(group[0].degree).size,):
             return
@@ -38,7 +44,7 @@ def _refined(solver, known):
         yield from (mode for mode in modes if mode)
 
 
-def _groups(modes):
+def _groups(modes: "list[Mode]") -> list[tuple[Any, ...]]:
     """Modes that are refined together, each with the degree: one alone at its degree joins one alone at the next."""
     groups = {degree: [mode for mode in modes if mode.degree == degree] for degree in {mode.degree for mode in modes}}
     degrees = sorted(groups)

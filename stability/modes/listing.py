@@ -9,6 +9,7 @@ lose digits in strongly sheared layers), that of the full matrix decides.
 """
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +18,10 @@ from ..status import doubtful, is_resolved
 from .cutoff import belongs_to_cut
 from .dense import dense_degrees, finite_rates
 from .winding import winding
+
+if TYPE_CHECKING:
+    from .mode import Mode
+    from .solver import Solver
 
 FIRST = 6  # rung of the degrees at which a look starts
 _MORE = 10  # eigenvalues beside twice the number asked for that are tried where they do not settle
@@ -42,7 +47,7 @@ class Listing:
     doubt: str | None
 
     @property
-    def status(self):
+    def status(self) -> tuple[Any, ...]:
         """Of each mode; where others may be missing, that instead of "resolved"."""
         return tuple(doubtful(str(self.doubt)) if rank >= self.sure and is_resolved(mode.status) else mode.status
                      for rank, mode in enumerate(self.modes))
@@ -55,13 +60,13 @@ class _Class:
     is, in an unbounded fluid, what decays and does not settle.
     """
 
-    def __init__(self, solver, k):
+    def __init__(self, solver: "Solver", k: float) -> None:
         self.solver, self.k = solver, k
         self.rates, self.before, self.degree = np.empty(0, complex), np.empty(0, complex), 0
         self.unbound, self.seen, self.earlier, self.looks = (*(np.empty(0, complex) for _ in range(3)), 0)
         self.symbols = solver.symbols(k)
 
-    def look(self, degree):
+    def look(self, degree: int) -> None:
         rates = finite_rates(self.solver, degree, self.symbols)
         bound = self.solver.flow.bound(self.k, self.solver.width(self.k) * rates)
         before, self.seen, self.looks, self.earlier = self.seen, rates[bound], self.looks + 1, self.rates
@@ -73,21 +78,21 @@ class _Class:
             self.rates, self.before = self.seen[stays], before[_kept(before, self.seen)]
             self.unbound = np.concatenate((self.unbound, self.seen[~stays]))
 
-    def settled(self, line):
+    def settled(self, line: float) -> bool:
         """Whether the rates above the line are, one to one, those of the degree before."""
         if self.looks < 2:
             return False
         now, before = (rates[rates.real > line] for rates in (self.rates, self.before))
         return _paired(now, self.before) and _paired(before, self.rates)
 
-    def steady(self, count):
+    def steady(self, count: int) -> bool:
         """Whether, in an unbounded fluid, the leading modes that have settled were the leading ones before as well."""
         if not self.solver.flow.unbounded:
             return True
         first, before = (rates[np.argsort(-rates.real)][:count] for rates in (self.rates, self.earlier))
         return self.looks > 2 and len(first) == len(before) and _paired(first, before)
 
-    def refined(self, line):
+    def refined(self, line: float) -> list[Any]:
         """The modes above the line; None in place of those that the iteration leaves; those of a cut are put aside."""
         above = self.rates.real > line
         modes = [self._refined(rate) for rate in self.rates[above]]
@@ -98,26 +103,26 @@ class _Class:
             modes = [mode for mode, aside in zip(modes, cut, strict=True) if not aside]
         return modes
 
-    def _refined(self, rate):
+    def _refined(self, rate: complex) -> "Mode | None":
         try:
             mode = self.solver.solve(self.k, rate, None, self.enough)
         except ModeLost:
             return None
         return mode if abs(mode.rate - rate) < _LEAP * abs(rate) else None
 
-    def tried(self, line):
+    def tried(self, line: Any) -> Any:
         """Modes to which the rates above the line lead, or those of the degree before did."""
         rates = np.concatenate((self.rates, self.before))
         return [self._refined(rate) for rate in rates[rates.real > line]]
 
-    def missing(self, modes, line):
+    def missing(self, modes: list[Any], line: float) -> int:
         """How many eigenvalues above the line are not among these modes."""
         known = np.array([mode.rate for mode in modes], dtype=complex)
         below = self.rates[self.rates.real <= line]
         return winding(self.solver, self.degree, self.k, np.concatenate((known, below, self.unbound)), line)
 
 
-def listed(solver, k, count):
+def listed(solver: "Solver", k: float, count: int) -> "Listing":
     """Return the `Listing` of at least the `count` least stable modes at wavenumber k.
 
     Raises ModeLost where no mode settles.
@@ -128,7 +133,7 @@ def listed(solver, k, count):
         raise ModeLost(naming(solver.flow, f"k = {k:g}: {reason}")) from None
 
 
-def _listed(solver, k, count):
+def _listed(solver: "Solver", k: float, count: int) -> "Listing":
     classes, failures = [_Class(half, k) for half in solver.halves], 0
     for degree in dense_degrees(solver, _rung(solver, FIRST, _BASE[0]), 2):
         for one in classes:
@@ -146,7 +151,7 @@ def _listed(solver, k, count):
     return _checked(solver, _as_far_as_settled(classes, count, degree), count, degree)
 
 
-def _rung(solver, first, part):
+def _rung(solver: "Solver", first: int, part: float) -> int:
     """The rung to start from: at which the base flow is resolved where what does not settle is put aside."""
     if not solver.flow.unbounded:
         return first
@@ -154,11 +159,11 @@ def _rung(solver, first, part):
     return max(first, min(enough, default=0))
 
 
-def _all_rates(classes):
+def _all_rates(classes: "list[_Class]") -> np.ndarray:
     return np.concatenate([one.rates for one in classes])
 
 
-def _found(classes, line, degree):
+def _found(classes: "list[_Class]", line: float, degree: int) -> "Listing":
     """The `Listing` of all modes above a line."""
     refined = [one.refined(line) for one in classes]
     modes = _sorted([mode for part in refined for mode in _distinct(part)])
@@ -166,7 +171,7 @@ def _found(classes, line, degree):
     return Listing(modes, 0 if doubt else len(modes), doubt)
 
 
-def _as_far_as_settled(classes, count, degree):
+def _as_far_as_settled(classes: Any, count: Any, degree: int) -> Any:
     """The listing where the modes asked for do not settle: a sure part, if there is one, and the others behind it."""
     rates = _all_rates(classes)
     if not len(rates):
@@ -184,17 +189,17 @@ def _as_far_as_settled(classes, count, degree):
     return _joined((), known, doubt)
 
 
-def _joined(sure, known, doubt):
+def _joined(sure: Any, known: Any, doubt: Any) -> Any:
     """A listing of sure modes and, behind them, the others that are known."""
     others = [mode for modes in known for mode in modes if not any(same(mode, other) for other in sure)]
     return Listing((*sure, *_sorted(others)), len(sure), doubt)
 
 
-def _sorted(modes):
+def _sorted(modes: "list[Mode]") -> tuple[Any, ...]:
     return tuple(sorted(modes, key=lambda mode: -mode.growth_rate))
 
 
-def _checked(solver, found, count, degree):
+def _checked(solver: "Solver", found: "Listing", count: int, degree: int) -> "Listing":
     """The listing, doubtful where it has fewer than `count` modes; raises ModeLost where it has none."""
     if not found.modes:
         raise ModeLost(f"no mode settles up to degree {degree}")
@@ -208,7 +213,7 @@ def _checked(solver, found, count, degree):
     return found
 
 
-def leading_modes(solver, k, count):
+def leading_modes(solver: "Solver", k: Any, count: Any) -> Any:
     """Return the `count` least stable modes as a list; unresolved ones carry that status, or that others may lead.
 
     Raises ModeLost where none of them settles.
@@ -217,7 +222,7 @@ def leading_modes(solver, k, count):
     return [replace(mode, status=status) for mode, status in zip(found.modes, found.status, strict=True)][:count]
 
 
-def near_neutral(solver, k, depth, rung):
+def near_neutral(solver: "Solver", k: float, depth: float, rung: int) -> tuple[Any, ...]:
     """Return all modes whose rates decay no faster than `depth`, and a rung to start from next.
 
     Where that takes a large dense problem, a part of the depth may do. Raises ModeLost where they do not settle.
@@ -235,7 +240,7 @@ def near_neutral(solver, k, depth, rung):
     raise ModeLost(f"{solver.flow}, k = {k:g}: the least stable modes do not settle up to degree {degrees[-1]}")
 
 
-def _line(rates, count):
+def _line(rates: np.ndarray, count: int) -> float:
     """A growth rate below the `count` leading ones, in the widest gap among the next few."""
     growth = np.sort(rates.real)[::-1]
     gaps = -np.diff(growth[count - 1: count + _SPARE])
@@ -245,7 +250,7 @@ def _line(rates, count):
     return (growth[widest] + growth[widest + 1]) / 2
 
 
-def _paired(rates, others):
+def _paired(rates: np.ndarray, others: np.ndarray) -> bool:
     """Whether each rate has an other one of its own within the drift allowed."""
     if not len(rates) or not len(others):
         return not len(rates)
@@ -254,13 +259,13 @@ def _paired(rates, others):
     return len(set(nearest.tolist())) == len(rates) and bool(np.all(distance.min(axis=1) < _DRIFT * np.abs(rates)))
 
 
-def _kept(rates, others):
+def _kept(rates: Any, others: Any) -> Any:
     """Which rates grow, or have an other one within the drift allowed."""
     near = np.abs(rates[:, None] - others).min(axis=1, initial=np.inf) < _DRIFT * np.abs(rates)
     return (rates.real >= 0) | near
 
 
-def _distinct(modes):
+def _distinct(modes: list[Any]) -> list[Any]:
     """The modes that are there, each once: two are the same where their error bars meet."""
     kept = []
     for mode in modes:
@@ -269,11 +274,11 @@ def _distinct(modes):
     return kept
 
 
-def same(mode, other):
+def same(mode: "Mode", other: "Mode") -> bool:
     return abs(mode.sigma - other.sigma) <= mode.error + other.error
 
 
-def _doubt(classes, refined, line, degree):
+def _doubt(classes: "list[_Class]", refined: list[Any], line: float, degree: int) -> Any:
     """Why modes above the line may be missing from those refined in each class, or None."""
     for one, modes in zip(classes, refined, strict=True):
         if len(_distinct(modes)) < len(modes):

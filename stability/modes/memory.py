@@ -8,13 +8,21 @@ alone: another thread follows its own.
 """
 
 from collections import OrderedDict
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import fields
 from math import inf, log
 from threading import Lock
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from ..flows.base import Flow
+    from .branch import Branch
+    from .mode import Mode
+    from .solver import Solver
 
 KEPT = 8  # branches, some megabytes each
 _AHEAD = 20  # wavenumbers whose functions of k are evaluated with those of the modes that are known
@@ -26,7 +34,7 @@ _lock = Lock()
 
 
 @contextmanager
-def branch_of(solver, make, wavenumbers):
+def branch_of(solver: "Solver", make: Callable[..., Any], wavenumbers: Any) -> Iterator[Any]:
     """Lend the branch that `make(solver, known)` returns, one that was followed before if there is one.
 
     `known` are modes of a flow that is nearly the same, {k: mode}, up to the `wavenumbers` that are asked for, or None.
@@ -53,7 +61,7 @@ def branch_of(solver, make, wavenumbers):
                 branches.popitem(last=False)
 
 
-def _nearest(flow, *others):
+def _nearest(flow: "Flow", *others: Any) -> "Branch | None":
     """The branch kept, of the same kind, whose flow is nearest to this one; None where none is near."""
     near, least = None, _NEAR
     for (other, *key), branch in _kept.get().items():
@@ -62,13 +70,13 @@ def _nearest(flow, *others):
     return near
 
 
-def _up_to(k, known):
+def _up_to(k: float, known: "dict[float, Mode]") -> "dict[float, Mode]":
     """What is known up to the first wavenumber beyond k."""
     beyond = min((other for other in known if other >= k), default=inf)
     return {other: mode for other, mode in known.items() if other <= beyond}
 
 
-def _distance(one, other):
+def _distance(one: "Flow", other: "Flow") -> float:
     """Between two flows that differ in positive numbers alone: the sum of the moduli of log ratios."""
     total = 0.0
     for item in fields(one):
@@ -81,7 +89,7 @@ def _distance(one, other):
 
 
 @contextmanager
-def apart():
+def apart() -> Iterator[Any]:
     """Remember nothing in here of what was before, nor afterwards of what was here: digits depend on no other work."""
     token = _kept.set(OrderedDict())
     try:
@@ -90,7 +98,7 @@ def apart():
         _kept.reset(token)
 
 
-def forget():
+def forget() -> None:
     """Keep nothing of what was followed."""
     with _lock:
         _kept.get().clear()

@@ -166,7 +166,7 @@ class Mode(Eigenvalue):
         return {one.parameter: one.slope for one in sensitivities(self).slopes}
 
 
-def require(mode):
+def require(mode: "Mode") -> "Mode":
     """Return the mode if it is resolved, else raise NotResolved."""
     if not is_resolved(mode.status):
         raise NotResolved(f"{mode.flow}, k={mode.k:g}: {mode.status}; raise max_degree or loosen the tolerance")

@@ -11,7 +11,7 @@ of the c_j gives the standard error of sigma, and of all that follows from it.
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.polynomial import chebyshev as C
@@ -19,6 +19,10 @@ from numpy.polynomial import chebyshev as C
 from ..errors import ModeLost, ParameterError
 from ..flows.base import check_flow
 from ..numerics import chebyshev
+
+if TYPE_CHECKING:
+    from .mode import Mode
+    from .solver import Solver
 
 _POINTS = 33  # at which it is asked whether a fluid is Newtonian
 _STEP = 1e-3  # in log k, of the difference that gives d/dk of a response
@@ -51,7 +55,7 @@ def check_base_flow(flow: Any) -> None:
                                  "viscosity too, which this sensitivity leaves out")
 
 
-def shear_response(solver, k, degree, eigen):
+def shear_response(solver: "Solver", k: Any, degree: int, eigen: Any) -> Any:
     """Return the `Weights` of the one layer of a flow for an eigenvalue at k, with vectors of this degree."""
     pencil, (layer,) = solver.pencil(degree), solver.flow.layers(None)
     count = degree + solver.assembly.system.longest + 8  # products are then summed exactly
@@ -66,16 +70,16 @@ def shear_response(solver, k, degree, eigen):
                    np.broadcast_to(base.dz, s.shape))
 
 
-def _doubled(y):
+def _doubled(y: Any) -> Any:
     """The function whose mean product with a series over the angle is y times its coefficients."""
     return np.concatenate((y[:1], 2 * y[1:]))
 
 
-def _values(series, count):
+def _values(series: Any, count: Any) -> Any:
     return chebyshev.values(np.concatenate((series, np.zeros(count - len(series), series.dtype))))
 
 
-def gradient(solver, k, degree, eigen):
+def gradient(solver: "Solver", k: Any, degree: int, eigen: Any) -> Any:
     """Return d sigma / d c_j (terms,) in the coefficients of the fit of a flow with `data`."""
     known = shear_response(solver, k, degree, eigen)
     z = solver.flow.heights(known.s)
@@ -83,24 +87,24 @@ def gradient(solver, k, degree, eigen):
     return known.on_U @ data.basis(z) + known.on_dU @ data.slopes(z)
 
 
-def standard_error(data, slopes):
+def standard_error(data: Any, slopes: Any) -> Any:
     """Standard error of a quantity with these real slopes (terms,) in the coefficients of a fit."""
     return float(np.sqrt(max(slopes @ data.covariance @ slopes, 0.0)))
 
 
-def data_error(solver, k, degree, eigen):
+def data_error(solver: "Solver", k: Any, degree: int, eigen: Any) -> Any:
     """Standard error of the growth rate from the errors of the data; None where there are no data."""
     if solver.flow.data is None:
         return None
     return standard_error(solver.flow.data, gradient(solver, k, degree, eigen).real)
 
 
-def of_mode(solver, mode):
+def of_mode(solver: "Solver", mode: Any) -> Any:
     """`gradient` of a mode."""
     return gradient(solver, mode.k, mode.degree, mode)
 
 
-def error_of_maximum(solver, mode):
+def error_of_maximum(solver: "Solver", mode: "Mode") -> Any:
     """Standard error of the wavenumber at which the growth of a mode is largest; None without data.
 
     There d growth/dk = 0 whatever U is: dk = -(d^2 growth / dk dc) dc / (d^2 growth / dk^2).
@@ -116,19 +120,19 @@ def error_of_maximum(solver, mode):
     return standard_error(solver.flow.data, mixed / bend)
 
 
-def error_of_zero(solver, mode, by_value):
+def error_of_zero(solver: "Solver", mode: "Mode", by_value: float) -> Any:
     """Standard error of the value at which growth is 0 (and largest over k, where k is free), given its slope there."""
     if solver.flow.data is None:
         return None
     return standard_error(solver.flow.data, of_mode(solver, mode).real / by_value)
 
 
-def _beside(solver, mode, step):
+def _beside(solver: "Solver", mode: Any, step: Any) -> Any:
     k = mode.k * np.exp(step)
     return solver.solve(k, mode.rate + (k - mode.k) * mode.rate_slope, (mode.degree, mode.x, mode.y))
 
 
-def spread_of(solver, k, degree, eigen, cut):
+def spread_of(solver: "Solver", k: Any, degree: int, eigen: Any, cut: Any) -> Any:
     """Bound of the change of sigma where U is a series that leaves out `cut` at most, and U' its slope."""
     known = shear_response(solver, k, degree, eigen)
     on_U = known.on_U + _differences(len(known.s)).T @ (known.on_dU / known.slope)
@@ -136,7 +140,7 @@ def spread_of(solver, k, degree, eigen, cut):
 
 
 @lru_cache(maxsize=8)
-def _differences(count):
+def _differences(count: Any) -> Any:
     """Matrix (count, count) from values at Chebyshev points to those of d/ds."""
     series = chebyshev.transform(np.eye(count)).T  # terms by points
     slopes = np.vstack((2 * C.chebder(series), np.zeros((1, count))))

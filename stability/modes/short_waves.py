@@ -3,9 +3,10 @@
 In a layer whose short waves grow without bound (`flows.rheology`) the model itself fails.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +14,10 @@ from ..equations.layer import numbers
 from ..flows.base import check_flow
 from ..flows.rheology import condition, ill_posed, short_wave_growth
 from ..numerics.threads import one_thread
+
+if TYPE_CHECKING:
+    from ..equations.layer import Layer
+    from ..flows.base import Flow
 
 LOOKED_AT = 201  # heights of a layer at which C is looked at
 
@@ -29,7 +34,7 @@ class Strip:
     low: float
     high: float
 
-    def __str__(self):
+    def __str__(self) -> str:
         return f"{self.layer} is ill posed between heights {self.low:.4g} and {self.high:.4g} above its lower edge"
 
 
@@ -58,13 +63,13 @@ class WellPosedness:
     strips: tuple
 
     @property
-    def ill_posed(self):
+    def ill_posed(self) -> Any:
         """Whether short waves grow without bound anywhere."""
         return bool(self.strips)
 
 
 @one_thread
-def well_posedness(flow, points=LOOKED_AT):
+def well_posedness(flow: "Flow", points: int = LOOKED_AT) -> "WellPosedness":
     """Return the `WellPosedness` of a flow, at `points` points of each of its layers.
 
     >>> from stability import flows
@@ -87,13 +92,13 @@ def well_posedness(flow, points=LOOKED_AT):
     return WellPosedness(flow, tuple(names.tolist()), heights, conditions, growths, ills, tuple(strips))
 
 
-def ill_posed_strips(flow, points=LOOKED_AT):
+def ill_posed_strips(flow: Any, points: Any = LOOKED_AT) -> Any:
     """Return the ill-posed `Strip`s of a flow, as far as they show at as many heights of each layer."""
     return tuple(strip for layer, ill in _looked_at(flow, points) if ill.any()
                  for strip in _strips(layer, _points(points), ill))
 
 
-def ill_posed_somewhere(flow, points=LOOKED_AT):
+def ill_posed_somewhere(flow: "Flow", points: int = LOOKED_AT) -> bool:
     """Whether some layer of the flow is ill posed at one of as many heights."""
     try:
         hash(flow)
@@ -102,26 +107,26 @@ def ill_posed_somewhere(flow, points=LOOKED_AT):
     return _remembered(flow, points)
 
 
-def _somewhere(flow, points):
+def _somewhere(flow: "Flow", points: int) -> bool:
     return any(ill.any() for _, ill in _looked_at(flow, points))
 
 
 _remembered = lru_cache(maxsize=_REMEMBERED)(_somewhere)
 
 
-def _points(count):
+def _points(count: int) -> np.ndarray:
     """Points (count,) of a layer from edge to edge, dense near the edges."""
     return (1 - np.cos(np.pi * np.arange(count) / (count - 1))) / 2
 
 
-def _looked_at(flow, points):
+def _looked_at(flow: "Flow", points: int) -> Iterator[Any]:
     """Each layer, and where it is ill posed (points,)."""
     for layer in flow.layers(numbers(flow)):
         ratio, alpha, *_ = _coefficients(layer, _points(points))
         yield layer, ill_posed(ratio, alpha)
 
 
-def _coefficients(layer, s):
+def _coefficients(layer: "Layer", s: np.ndarray) -> np.ndarray:
     """beta / eta, alpha, eta and rho at the points s, as arrays; the limit where an edge gives 0/0."""
     with np.errstate(divide="ignore", invalid="ignore"):
         at, inside = (np.array([np.broadcast_to(value, s.shape)
@@ -130,7 +135,7 @@ def _coefficients(layer, s):
     return np.where(np.isnan(at), inside, at)
 
 
-def _strips(layer, s, ill):
+def _strips(layer: "Layer", s: np.ndarray, ill: np.ndarray) -> list[Any]:
     """The ill-posed intervals between points of either kind, their ends bisected."""
     changes = np.flatnonzero(ill[1:] != ill[:-1])
     ends = [_edge(layer, s[i], s[i + 1], ill[i]) for i in changes]
@@ -140,7 +145,7 @@ def _strips(layer, s, ill):
             for low, high in zip(heights[::2], heights[1::2], strict=True)]
 
 
-def _edge(layer, low, high, ill_below):
+def _edge(layer: "Layer", low: float, high: float, ill_below: bool) -> float:
     """Where a layer changes its kind between two points: the interval is cut into parts until rounding."""
     for _ in range(_CUTS):
         s = np.linspace(low, high, _PARTS + 1)

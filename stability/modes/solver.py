@@ -1,6 +1,7 @@
 """The solver of one flow: refines a mode at the degree it needs, with error bars."""
 
 from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -10,12 +11,20 @@ from ..equations.table import Table
 from ..flows.base import check_flow
 from ..numerics.refine import VECTOR, refine, refine_many
 from ..status import RESOLVED, unresolved
-from .accuracy import TOLERANCE, Accuracy
+from .accuracy import TOLERANCE, USUAL
 from .cutoff import neglected
 from .mode import Mode
 from .response import data_error, spread_of
 
+if TYPE_CHECKING:
+    from ..equations.system import Structure
+    from ..equations.table import Table
+    from ..flows.base import Flow
+    from ..numerics.refine import Eigen
+    from .accuracy import Accuracy
+
 _FAR_BELOW = 1e-15  # relative truncation error that is aimed at with the default tolerance
+_OVERSOLVED = 1e-7  # truncation over rounding below which one rung less of the degree suffices as well
 _VECTOR, _ROUGHEST = 0.01, 1e-6  # error of vectors without bars, in units of the tolerance; the largest
 _GLANCE = 0.3  # relative distance of a rate from a long-wave limit at which a mode may be meant
 _SCATTER = 40.0  # error of a slope from vectors right to rounding, in units of error times 1 or 1/k (measured)
@@ -34,15 +43,15 @@ class Assembly:
     Where their entries lie is kept for all flows with the same structure.
     """
 
-    def __init__(self, flow):
+    def __init__(self, flow: "Flow") -> None:
         self._flow = flow
         self._values, self._pencils = {}, {}
 
     @cached_property
-    def system(self):
+    def system(self) -> System:
         return System(self._flow)
 
-    def pencil(self, degree):
+    def pencil(self, degree: int) -> Pencil:
         if degree not in self._pencils:
             layout = self._layout(degree)
             if layout.table not in self._values:
@@ -51,18 +60,18 @@ class Assembly:
         return self._pencils[degree]
 
     @property
-    def small(self):
+    def small(self) -> bool:
         """Whether its matrices take a few megabytes at most."""
         return all(table.degree * table.structure.longest <= _SMALL for table in self._values)
 
-    def _layout(self, degree):
+    def _layout(self, degree: int) -> Layout:
         structure, size = self.system.structure, max(_LEAST, 1 << int(degree - 1).bit_length())
         if size * structure.longest <= _SMALL:
             return _layout_of(structure, degree, size)
         large = (table for table in self._values if table.degree == size)
         return Layout(next(large, None) or Table(structure, size), degree)
 
-    def serving(self, flow):
+    def serving(self, flow: "Flow") -> "Assembly":
         """Return this assembly if its equations are those of `flow` too, else a new one.
 
         Parameters that enter only through functions of k leave the matrices alone.
@@ -72,12 +81,12 @@ class Assembly:
 
 
 @lru_cache(maxsize=_LAYOUTS)
-def _layout_of(structure, degree, size):
+def _layout_of(structure: "Structure", degree: int, size: int) -> Layout:
     return Layout(_table_of(structure, size), degree)
 
 
 @lru_cache(maxsize=_TABLES)
-def _table_of(structure, degree):
+def _table_of(structure: "Structure", degree: int) -> "Table":
     return Table(structure, degree)
 
 
@@ -89,7 +98,8 @@ class Solver:
     truncation alone.
     """
 
-    def __init__(self, flow, accuracy=Accuracy(), assembly=None, bars=True):  # noqa: B008 - a value that never changes
+    def __init__(self, flow: "Flow", accuracy: "Accuracy" = USUAL, assembly: "Assembly | None" = None,
+                 bars: bool = True) -> None:
         self.flow = check_flow(flow)
         self.bars = bars
         self.accuracy, self.tolerance = accuracy, (tolerance := accuracy.tolerance)
@@ -102,17 +112,17 @@ class Solver:
         self.foresight = None
 
     @property
-    def halves(self):
+    def halves(self) -> tuple[Any, ...]:
         """Solvers of the symmetry classes of the flow: this one alone where it has none."""
         return self._halves or (self,)  # not kept: a solver that refers to itself would outlive its use
 
     @cached_property
-    def _halves(self):
+    def _halves(self) -> tuple[Any, ...]:
         parts = self.flow.halves()
         return () if parts == (self.flow,) else tuple(Solver(half, self.accuracy, bars=self.bars)
                                                       for half in parts)
 
-    def prepare(self, k):
+    def prepare(self, k: np.ndarray) -> None:
         """Evaluate the flow's functions of k, and the weights, for a whole array (count,) at once."""
         k = k[[one not in self._known for one in k.tolist()]]
         if not len(k):
@@ -125,39 +135,39 @@ class Solver:
         for index, one in enumerate(k.tolist()):
             self._known[one] = [symbols, rows, index, None]
 
-    def _at(self, k):
+    def _at(self, k: float) -> list[Any]:
         k = float(k)
         if k not in self._known:
             self.prepare(np.array([k]))
         return self._known[k]
 
-    def symbols(self, k):
+    def symbols(self, k: float) -> dict[str, tuple[Any, ...]]:
         """Return {name: (value, slope, error)} of the symbols at one wavenumber."""
         symbols, _, index, _ = self._at(k)
         return {name: tuple(values[index] for values in triple) for name, triple in symbols.items()}
 
-    def weights(self, k):
+    def weights(self, k: Any) -> Weights:
         """Return the weights of the pencils at one wavenumber, (parts,), or at a list of them, (parts, points)."""
         if isinstance(k, list):
-            known = [self._at(one) for one in k]
-            return Weights(*(np.array([rows[part][index] for _, rows, index, _ in known]).T for part in range(3)))
+            each = [self._at(one) for one in k]
+            return Weights(*(np.array([rows[part][index] for _, rows, index, _ in each]).T for part in range(3)))
         known = self._at(k)
         if known[-1] is None:
             _, rows, index, _ = known
             known[-1] = Weights(*(array[index] for array in rows))
         return known[-1]
 
-    def width(self, k):
+    def width(self, k: float) -> float:
         """sigma / rate at wavenumber k."""
         return k ** (1 + self.flow.order)
 
-    def rough(self, tolerance):
+    def rough(self, tolerance: float) -> "Solver":
         """Return a solver of the same equations, no more accurate than this and without bars."""
         rough = Solver(self.flow, self.accuracy.rougher(tolerance), self.assembly, bars=False)
         rough._known = self._known
         return rough
 
-    def solve(self, k, rate, vectors=None, degree=None, glance=False):
+    def solve(self, k: Any, rate: Any, vectors: Any = None, degree: Any = None, glance: Any = False) -> Any:
         """Return the mode next to `rate`, at the first degree that resolves it; at the first one tried for a `glance`.
 
         `vectors` is (degree, x, y) of a nearby mode, if known. Raises ModeLost where the iteration
@@ -177,53 +187,54 @@ class Solver:
             rate, vectors = eigen.rate, (degree, eigen.x, eigen.y)
         return mode
 
-    def refined(self, mode):
+    def refined(self, mode: Mode) -> Mode:
         """Return a mode of a rougher solver as this one has it."""
         return self.solve(mode.k, mode.rate, (mode.degree, mode.x, mode.y), self.likely_degree(mode))
 
-    def likely_degree(self, mode):
+    def likely_degree(self, mode: Mode) -> int:
         """The degree to try first where a rougher solver has found this mode: a higher one where its own is too low."""
         rung = self.degrees.index(mode.degree)
         return self.degrees[min(rung + (not self.fits(mode)), len(self.degrees) - 1)]
 
-    def solve_many(self, wavenumbers, rates, vectors, degree):
+    def solve_many(self, wavenumbers: list[float], rates: np.ndarray | None, vectors: list[np.ndarray],
+                   degree: int) -> list[Any]:
         """Return the modes at many wavenumbers at once, None where more work is needed.
 
         `rates` (points,) and right and left `vectors` (points, size) of this degree are good guesses. Without rates
         the quotients of the vectors are.
         """
-        modes = []
+        modes, (x, y) = [], vectors
         count = max(1, min(_TOGETHER[0], _TOGETHER[1] // degree))
         for first in range(0, len(wavenumbers), count):
             part = slice(first, first + count)
             eigen = refine_many(self.pencil(degree), self.weights(wavenumbers[part]),
                                 None if rates is None else rates[part],
-                                *(rows[part] for rows in vectors), self.bars, self.vectors)
+                                x[part], y[part], self.bars, self.vectors)
             found = [self._mode(k, degree, one) for k, one in zip(wavenumbers[part], eigen.split(), strict=True)]
             modes += [mode if settled and self.fits(mode) else None
                       for mode, settled in zip(found, eigen.settled, strict=True)]
         return modes
 
-    def fits(self, mode):
+    def fits(self, mode: Mode) -> bool:
         """Whether the truncation error is as small as is aimed at, or below rounding."""
         return mode.truncation <= max(mode.rounding, self.truncation * abs(mode.sigma))
 
-    def resolves(self, mode):
+    def resolves(self, mode: Mode) -> bool:
         """Whether the truncation error is within the tolerance, or could be at a larger degree."""
         return mode.degree < self.degrees[-1] or mode.truncation <= self.tolerance * abs(mode.sigma)
 
-    def overlap(self, old, mode):
+    def overlap(self, old: Mode, mode: Mode) -> complex:
         """Product of the two biorthogonal overlaps of a new mode with an old one: near 1 for one mode, 0 for two."""
         x, y = transfer(self, (old.degree, old.x, old.y), mode.degree)
         b, _ = self.pencil(mode.degree).b_products(self.weights(mode.k).value)
         return np.vdot(y, b(mode.x)) * np.vdot(mode.y, b(x))
 
-    def next_degree(self, mode):
+    def next_degree(self, mode: Mode) -> int:
         """The degree to try first near this mode: one rung lower where it is over-resolved."""
         rung = self.degrees.index(mode.degree)
-        return self.degrees[rung - 1] if rung and mode.truncation < 1e-7 * mode.rounding else mode.degree
+        return self.degrees[rung - 1] if rung and mode.truncation < _OVERSOLVED * mode.rounding else mode.degree
 
-    def _mode(self, k, degree, eigen):
+    def _mode(self, k: float, degree: int, eigen: "Eigen") -> Mode:
         width = self.width(k)
         sigma = width * eigen.rate
         rounding = width * _ROUNDING * eigen.rounding + width * eigen.spread + _EPS * abs(sigma)
@@ -244,7 +255,7 @@ class Solver:
                     float(truncation), float(rounding), eigen.rate, eigen.slope, eigen.x, eigen.y,
                     self._data_error(k, degree, eigen), float(scatter))
 
-    def _data_error(self, k, degree, eigen):
+    def _data_error(self, k: float, degree: int, eigen: "Eigen") -> Any:
         """What the errors of a measured base flow do to the growth rate, None without such errors or without bars."""
         if not self.bars or self.flow.data is None:
             return None
@@ -252,7 +263,7 @@ class Solver:
         return data_error(self, k, degree, eigen)
 
 
-def transfer(solver, vectors, degree):
+def transfer(solver: "Solver", vectors: tuple[int, np.ndarray, np.ndarray], degree: int) -> tuple[np.ndarray, ...]:
     """Eigenvectors (degree, x, y) of one degree as vectors of another: series are padded or cut."""
     old, x, y = vectors
     if old == degree:
@@ -262,7 +273,7 @@ def transfer(solver, vectors, degree):
                  zip((x, y), solver.pencil(old).layout.common(target), strict=True))
 
 
-def _fit(vector, source, target, size):
+def _fit(vector: np.ndarray, source: np.ndarray, target: np.ndarray, size: int) -> np.ndarray:
     fitted = np.zeros(size, vector.dtype)
     fitted[target] = vector[source]
     return fitted

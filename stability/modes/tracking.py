@@ -8,6 +8,7 @@ and slopes at its two ends fit one smooth curve.
 
 from dataclasses import dataclass
 from math import ceil, copysign, exp, floor, log
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,11 +16,20 @@ from ..errors import ModeLost
 from ..numerics.walker import Pace, Walker, towards
 from .solver import transfer
 
+if TYPE_CHECKING:
+    from .mode import Mode
+    from .solver import Solver
+
 _LARGEST_STEP = 0.6  # in log k
 _CLOSE = 0.02  # step below which a collision is looked for, and a rough walk goes on with full accuracy
 _NARROW = 5e-3  # step that tells of another mode near by
 _PACE = Pace(0.3, _LARGEST_STEP, 1e-8)
 _PREDICTION = 0.05  # relative error of the predictor at which the step length is kept
+_ORDER, _EXACT = 4, 1e-12  # of the error of the predictor in the step; an error too small to divide by
+_FLAT = 1e-9  # bend of a step, relative to the rate, that is never refused: rates need not be exact on a rough walk
+_REAL = 1e-10  # largest imaginary part, relative, of a rate that is real but for rounding
+_FARTHEST, _BEYOND = 1e6, 1e-4  # lengths of the last step within which a collision is crossed; least way behind it
+_NEARNESS = 1e-3, 1e-5  # relative distances at which a collision is placed by Newton: its error is their square
 _BEND = 0.1  # largest departure of a step from the mean of its end slopes, relative
 _OVERLAP = 0.4  # largest deviation of the overlap from 1
 _STEPS, _STRETCH = 1000, 100  # attempts, and after how many of them it is asked whether those left can suffice
@@ -37,7 +47,7 @@ class Collision:
     sigma: float
     becomes: str  # "pair" or "real"
 
-    def __str__(self):
+    def __str__(self) -> str:
         outcome = "a complex pair (the one travelling downstream is followed)" if self.becomes == "pair" else \
             "two real modes (the less damped one is followed)"
         return f"two modes collide at k = {self.k:.6g}, sigma = {self.sigma:.6g}, and become {outcome}"
@@ -50,7 +60,7 @@ class Encounter:
     k: float
     step: float
 
-    def __str__(self):
+    def __str__(self) -> str:
         return (f"two modes nearly meet at k = {self.k:.6g}: which of them goes on is told by steps of {self.step:.1g} "
                 "relative, and may be the other at slightly different parameters")
 
@@ -64,16 +74,17 @@ class Walk(Walker):
 
     checks = ("trusted", "same_kind", "smooth", "overlaps")
 
-    def __init__(self, solver, start, closer=None):
+    def __init__(self, solver: "Solver", start: "Mode", closer: "Solver | None" = None) -> None:
         super().__init__(_PACE)
         self.solver, self.closer = solver, closer
-        self.before, self.now = None, start
+        self.before: Mode | None = None
+        self.now = start
         self.shortest = self.step, start.k
         self.collisions = []
         self.segments = [[start]]
         self._attempts, self._blind, self._behind = 0, 0, start.k
 
-    def to(self, k):
+    def to(self, k: float) -> "Mode":
         """Step to wavenumber k."""
         attempts, behind = 0, self.now.k
         while gap := log(k / self.now.k):
@@ -86,7 +97,7 @@ class Walk(Walker):
             self._advance(towards(self.now.k, k, self.step)[0])
         return self.now
 
-    def beyond(self, k):
+    def beyond(self, k: float) -> None:
         """Step on until wavenumber k lies behind, by the same steps whichever it is."""
         side = copysign(1.0, log(k / self.segments[0][0].k))
         if self.solver.flow.functions and not self.solver.foresight:
@@ -101,19 +112,19 @@ class Walk(Walker):
             self._advance(_rung(self.now.k, side * self.step))
 
     @property
-    def encounter(self):
+    def encounter(self) -> "Encounter | None":
         """Where the steps were shortest, an `Encounter`, if so short that another mode must have been near."""
         step, k = self.shortest
         collided = any(abs(log(one.k / k)) < _LARGEST_STEP for one in self.collisions)  # that is told as such
         return Encounter(k, step) if step < _NARROW and not collided else None
 
-    def _watch(self):
+    def _watch(self) -> None:
         """Give up where the largest degree has not resolved the mode for long."""
         self._blind = 0 if self.solver.resolves(self.now) else self._blind + 1
         if self._blind > _BLIND:
             raise self._lost(f"degree {self.now.degree} does not resolve it any more")
 
-    def _advance(self, k):
+    def _advance(self, k: float) -> None:
         """Take one step to k, or shorten the step, or cross a collision."""
         if self.stride(k, abs(log(k / self.now.k))):
             return
@@ -126,47 +137,48 @@ class Walk(Walker):
         if self.stuck:
             raise self._lost(f"no mode overlaps its neighbour at k = {k:.6g}")
 
-    def correct(self, to, guess):
-        return self.solver.solve(to, *guess, self.solver.next_degree(self.now))
+    def correct(self, to: float, guess: tuple[Any, ...]) -> "Mode":
+        rate, vectors = guess
+        return self.solver.solve(to, rate, vectors, self.solver.next_degree(self.now))
 
-    def factor(self, new, guess):
-        miss = abs(new.rate - guess[0]) / (abs(new.rate) + abs(new.k * new.rate_slope)) + 1e-12
-        return min(2.0, max(0.5, (_PREDICTION / miss) ** 0.25))
+    def factor(self, new: "Mode", guess: tuple[Any, ...]) -> float:
+        miss = abs(new.rate - guess[0]) / (abs(new.rate) + abs(new.k * new.rate_slope)) + _EXACT
+        return min(2.0, max(0.5, (_PREDICTION / miss) ** (1 / _ORDER)))
 
-    def accept(self, to, new):
+    def accept(self, to: Any, new: Any) -> None:
         self.before, self.now = self.now, new
         self.segments[-1].append(new)
 
-    def _look_closer(self):
+    def _look_closer(self) -> None:
         """Go on from here with full accuracy."""
-        self.solver, self.closer = self.closer, None
+        self.solver, self.closer = self.closer or self.solver, None
         now = self.solver.solve(self.now.k, self.now.rate, (self.now.degree, self.now.x, self.now.y))
         self.segments[-1][-1] = self.now = now
 
-    def trusted(self, mode, guess):
+    def trusted(self, mode: "Mode", guess: tuple[Any, ...]) -> bool:
         """Whether the mode is resolved well enough to be followed, if not to the tolerance."""
         return mode.error <= max(_TRUST, self.solver.tolerance) * abs(mode.sigma)
 
-    def smooth(self, mode, guess):
+    def smooth(self, mode: "Mode", guess: tuple[Any, ...]) -> bool:
         """Whether the rates and slopes at both ends of the step belong to one smooth curve in log k."""
         h, rise = log(mode.k / self.now.k), mode.rate - self.now.rate
         a, b = (h * end.k * end.rate_slope for end in (self.now, mode))
-        return abs(rise - (a + b) / 2) <= _BEND * (abs(rise) + abs(a) + abs(b)) + 1e-9 * abs(mode.rate)
+        return abs(rise - (a + b) / 2) <= _BEND * (abs(rise) + abs(a) + abs(b)) + _FLAT * abs(mode.rate)
 
-    def same_kind(self, mode, guess):
+    def same_kind(self, mode: "Mode", guess: tuple[Any, ...]) -> bool:
         """Real stays real and complex stays complex, unless a collision has been found."""
-        real = abs(mode.rate.imag) < 1e-10 * abs(mode.rate)
+        real = abs(mode.rate.imag) < _REAL * abs(mode.rate)
         return not self.solver.pencil(mode.degree).real or real == (self.now.rate.imag == 0)
 
-    def overlaps(self, mode, guess):
+    def overlaps(self, mode: "Mode", guess: tuple[Any, ...]) -> bool:
         """Whether the new and the old eigenvectors are biorthogonal partners."""
         return abs(self.solver.overlap(self.now, mode) - 1) < _OVERLAP
 
-    def _lost(self, why):
+    def _lost(self, why: Any) -> Any:
         return ModeLost(f"{self.solver.flow}: the mode is lost at k = {self.now.k:.6g}, "
                         f"sigma = {_told(self.now):.6g}: {why}")
 
-    def foresee(self, k):
+    def foresee(self, k: float) -> tuple[Any, ...]:
         """Extrapolate rate and vectors to k from the last two modes."""
         now, before = self.now, self.before
         t = log(k / now.k)
@@ -182,7 +194,7 @@ class Walk(Walker):
         x, y = transfer(self.solver, (before.degree, before.x, before.y), now.degree)
         return rate, (now.degree, _extrapolate(now.x, x, t / h), _extrapolate(now.y, y, t / h))
 
-    def _cross(self, k):
+    def _cross(self, k: float) -> bool:
         """Step across a collision of two real modes (or of a conjugate pair) just ahead; True if there is one.
 
         Near it rate = m(k) +- sqrt(q(k)) with m and q smooth and q = 0 at the collision.
@@ -200,9 +212,9 @@ class Walk(Walker):
             middle = now.rate.real + (ahead - now.k) * slope.real
             half = abs(now.rate.imag)
         reach = (k - now.k) / (ahead - now.k)
-        if not 1 < reach < 1e6:
+        if not 1 < reach < _FARTHEST:
             return False
-        distance = min(abs(k - ahead), max(abs(ahead - now.k), 1e-4 * ahead))
+        distance = min(abs(k - ahead), max(abs(ahead - now.k), _BEYOND * ahead))
         beyond = ahead + copysign(distance, k - ahead)
         guess = middle + half * (distance / abs(ahead - now.k)) ** 0.5
         try:
@@ -217,9 +229,9 @@ class Walk(Walker):
         self.step = abs(log(beyond / now.k))
         return True
 
-    def _pin(self, pair, becomes):
+    def _pin(self, pair: Any, becomes: Any) -> Any:
         """Place the collision by Newton on Im(rate)^2 = 0, from the complex side, ever nearer to it."""
-        for nearness in (1e-3, 1e-5):
+        for nearness in _NEARNESS:
             k = pair.k - pair.rate.imag / (2 * pair.rate_slope.imag)
             near = k + copysign(nearness * k, pair.k - k)
             if abs(near - k) < abs(pair.k - k):
@@ -231,7 +243,7 @@ class Walk(Walker):
         return Collision(k, float(self.solver.width(k) * rate), becomes)
 
 
-def _rung(k, step):
+def _rung(k: float, step: float) -> float:
     """The wavenumber a step in log k away, or the last rung of the ladder before it if that is not much nearer."""
     ahead = k * exp(step)
     index = log(ahead) / _RUNG
@@ -239,13 +251,13 @@ def _rung(k, step):
     return rung if abs(log(rung / k)) > 0.5 * abs(step) and (rung - k) * step > 0 else ahead
 
 
-def _told(mode):
+def _told(mode: Any) -> complex:
     """Its sigma, parts within the error left out: they are noise."""
     real, imag = (0.0 if abs(part) <= mode.error else part for part in (mode.sigma.real, mode.sigma.imag))
     return complex(real, imag)
 
 
-def _likely(start, end, step):
+def _likely(start: float, end: float, step: float) -> list[float]:
     """The wavenumbers that a walk comes to on its way if every step is as long as it may be."""
     found = []
     while (end - start) * step > 0:
@@ -255,12 +267,12 @@ def _likely(start, end, step):
     return found
 
 
-def _extrapolate(now, before, ratio):
+def _extrapolate(now: np.ndarray, before: np.ndarray, ratio: float) -> np.ndarray:
     """Linear extrapolation of vectors, the older one first given the scale of the newer."""
     scale = np.vdot(before, now) / np.vdot(before, before)
     return now + ratio * (now - scale * before)
 
 
-def _zero(x0, f0, x1, f1):
+def _zero(x0: Any, f0: Any, x1: Any, f1: Any) -> Any:
     """Where the straight line through two points vanishes."""
     return x1 - f1 * (x1 - x0) / (f1 - f0) if f1 != f0 else np.inf

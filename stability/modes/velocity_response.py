@@ -1,5 +1,7 @@
 """The response of a mode to its base flow as a density over the height, S(z): see `modes.response`."""
 
+from typing import Any
+
 import numpy as np
 from numpy.polynomial import chebyshev as C
 from numpy.polynomial import legendre as L
@@ -14,7 +16,7 @@ _FAINT = 1e-3  # of the largest sensitivity to the base flow: less is not drawn
 _WINDOW = 6  # coefficients of an adjoint function among which the largest is taken for their size
 
 
-def density(mode, z):
+def density(mode: Any, z: Any) -> Any:
     """Return S(z), complex and of the shape of z: delta sigma = integral of S delta U dz, delta U' included.
 
     Raises ParameterError outside the layers, and for flows in which U enters in other ways as well.
@@ -31,7 +33,7 @@ def density(mode, z):
     return (found / (2 if mode.flow.reflection else 1)).reshape(heights.shape)
 
 
-def panel(mode):
+def panel(mode: Any) -> Any:
     """Real and imaginary part of S against z, where they matter."""
     curves: list[Curve] = []
     for part in Eigenfunction(mode).profiles():
@@ -43,7 +45,7 @@ def panel(mode):
                  zero="x")
 
 
-def _density(solver, mode, index, s):
+def _density(solver: Solver, mode: Any, index: Any, s: Any) -> Any:
     """S at the points s of a layer: the momentum equations against their adjoint functions, w' = dz v used."""
     pencil, layer = solver.pencil(mode.degree), solver.flow.layers(None)[index]
     base, k, width = layer.profile(s), mode.k, solver.width(mode.k)
@@ -56,7 +58,7 @@ def _density(solver, mode, index, s):
                                          + w * slope)
 
 
-def _adjoint(y):
+def _adjoint(y: Any) -> Any:
     """Legendre coefficients of the function f with y^H r = integral of conj(f) r ds for the T-coefficients r.
 
     The last of them are not those of f: they go with rows that no smooth residual feels. They grow from where those of

@@ -1,9 +1,14 @@
 """How many eigenvalues lie above a line in the plane of rates: the argument principle, asked of band factors first."""
 
+from collections.abc import Callable
 from itertools import pairwise
 from math import pi
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from ..equations.pencil import Pencil
 
 _SIDE = 6, 2, 2, 2  # points along the line and along the other sides of the contour
 _TURN = 1.0  # largest turn (radians) between neighbouring points of the contour
@@ -11,7 +16,7 @@ _FLAT = 0.1  # total turn (radians) below which a list is complete: rounding wou
 _HALVINGS = 12  # of a stretch of the contour
 
 
-def winding(solver, degree, k, known, line):
+def winding(solver: Any, degree: Any, k: Any, known: Any, line: Any) -> Any:
     """How often the determinant over (rate - known) turns around the rates above the line."""
     pencil = solver.pencil(degree)
     weights = pencil.weights(solver.symbols(k))
@@ -22,26 +27,26 @@ def winding(solver, degree, k, known, line):
     return round(_turns(lambda rates: [_phase(a - rate * b) for rate in rates], known, line, _HALVINGS) / (2 * pi))
 
 
-def _banded_phases(pencil, weights, rates):
+def _banded_phases(pencil: "Pencil", weights: np.ndarray, rates: np.ndarray) -> np.ndarray:
     """The determinants at these rates over their moduli, from band factors."""
     factors = pencil.factors(np.repeat(weights[:, None], len(rates), axis=1), rates)
     return np.where(factors.uneven, [pencil.factors(weights, rate).phase() if uneven else 0 for rate, uneven in
                                      zip(rates.tolist(), factors.uneven, strict=True)], factors.phases())
 
 
-def _phase(matrix):
+def _phase(matrix: Any) -> Any:
     """The determinant over its modulus, rows and columns brought to similar sizes first."""
     for axis in (1, 0):
         matrix = matrix / np.abs(matrix).max(axis=axis, keepdims=True)
     return np.linalg.slogdet(matrix)[0]
 
 
-def _turns(phases, known, line, halvings):
+def _turns(phases: Any, known: Any, line: Any, halvings: Any) -> Any:
     """The angle by which phase / (that of the product of rate - known) turns along the contour; `phases` of a list.
 
     None where it turns too much between neighbouring points, unless stretches may be halved.
     """
-    def turns(rates):
+    def turns(rates: list[complex]) -> list[complex]:
         away = np.array(rates)[:, None] - known
         return (np.asarray(phases(rates)) * np.prod((away / np.abs(away)).conj(), axis=1)).tolist()
 
@@ -59,7 +64,7 @@ def _turns(phases, known, line, halvings):
     return total
 
 
-def _corners(known, line):
+def _corners(known: np.ndarray, line: float) -> tuple[complex, ...]:
     """Corners of the contour, counterclockwise from the upper end of the line: with room for what is not known."""
     above = known[known.real > line]
     low, high, right = above.imag.min(initial=0), above.imag.max(initial=0), above.real.max(initial=line)
@@ -68,7 +73,7 @@ def _corners(known, line):
             complex(right + room, high + room))
 
 
-def _turned(turns, a, b, u, v, halvings):
+def _turned(turns: Callable[..., Any], a: complex, b: complex, u: complex, v: complex, halvings: int) -> float:
     """The angle by which the phase turns from u at a to v at b, halving the way until it turns little at a time."""
     angle = float(np.angle(v / u))
     if abs(angle) < _TURN or not halvings:

@@ -7,6 +7,7 @@ The interior is factorised as a band (LAPACK gbtrf); the border follows by block
 """
 
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy.linalg import lapack
@@ -27,7 +28,8 @@ class Places:
     column], the first `lower` places being room for fill; behind it `right` and then `bottom` with the corner.
     """
 
-    def __init__(self, part, row, column, parts, interior, border):
+    def __init__(self, part: np.ndarray, row: np.ndarray, column: np.ndarray, parts: int, interior: int,
+                 border: int) -> None:
         inside, below = (row < interior) & (column < interior), row >= interior
         shift = (row - column)[inside]
         self.interior, self.border = interior, border
@@ -45,11 +47,11 @@ class Places:
         self._matrix = csr_array((np.zeros(len(place)), part[self._order], np.append(first, len(place))),
                                  (len(first), parts))
 
-    def matrix(self, value):
+    def matrix(self, value: np.ndarray) -> Any:
         """The sparse matrix (places, parts) of entries with these values (entries,)."""
         return with_data(self._matrix, value[self._order])
 
-    def blocks(self, values):
+    def blocks(self, values: np.ndarray) -> tuple[np.ndarray, ...]:
         """Return band, right and bottom with these values (..., places) in place."""
         flat = np.zeros((*values.shape[:-1], self._starts[3]), values.dtype)
         flat[..., self._place] = values
@@ -60,10 +62,10 @@ class Places:
 class Bordered:
     """Sums of sparse matrices times scalars; entries lie at `places` and have the values `value` (entries,)."""
 
-    def __init__(self, places, value):
+    def __init__(self, places: "Places", value: np.ndarray) -> None:
         self.places, self._matrix = places, places.matrix(value)
 
-    def sum(self, weights):
+    def sum(self, weights: np.ndarray) -> tuple[Any, ...]:
         """Return the blocks of the sum of the parts times weights (parts,), and the scales of its rows and columns.
 
         Where entries are very large, the sum is scaled by powers of two that bring the largest entry of each row and
@@ -76,12 +78,12 @@ class Bordered:
             values *= scales[0][self.places.row] * scales[1][self.places.column]
         return self.places.blocks(values), scales
 
-    def sums(self, weights):
+    def sums(self, weights: Any) -> Any:
         """Return the blocks of the sums at many points, weights (parts, points), unscaled, and which are uneven."""
         values = np.ascontiguousarray((self._matrix @ weights).T)
         return self.places.blocks(values), np.abs(values.view(float)).max(axis=1) > _UNEVEN
 
-    def _scales(self, size):
+    def _scales(self, size: np.ndarray) -> np.ndarray:
         """Powers of two for rows and columns, (2, size), by the sizes of the entries."""
         places = self.places
         scales = np.ones((2, places.interior + places.border))
@@ -94,7 +96,7 @@ class Bordered:
         return scales
 
 
-def _inverse(matrix):
+def _inverse(matrix: np.ndarray) -> np.ndarray:
     """Of one small matrix, without what numpy's costs beside its work."""
     factor, invert = _FULL[matrix.dtype.kind]
     lu, pivots, info = factor(matrix)
@@ -111,7 +113,7 @@ class Factors:
     Raises numpy's LinAlgError where a pivot vanishes.
     """
 
-    def __init__(self, bordered, weights):
+    def __init__(self, bordered: "Bordered", weights: np.ndarray) -> None:
         (band, right, bottom), self._scales = bordered.sum(weights)
         self.uneven = self._scales is not None
         factor, self._solve = _BAND[band.dtype.kind]
@@ -125,39 +127,39 @@ class Factors:
         self._schur = bottom[:, self._interior:] - self._bottom @ self._coupled
         self._border = _inverse(self._schur)
 
-    def phase(self):
+    def phase(self) -> Any:
         """Return the determinant over its modulus (scales are positive: they leave it alone)."""
         return _phase(self._lu[self._lower + self._upper], self._pivots) * np.linalg.slogdet(self._schur)[0]
 
-    def solve(self, f):
+    def solve(self, f: Any) -> Any:
         """Return z with M z = f, (size, points) or (size,)."""
         if self.uneven:
             rows, columns = (scale.reshape(-1, *[1] * (f.ndim - 1)) for scale in self._scales)
             return columns * self._solved(rows * f)
         return self._solved(f)
 
-    def _solved(self, f):
+    def _solved(self, f: np.ndarray) -> np.ndarray:
         inner = self._inner(f[: self._interior])
         border = self._border @ (f[self._interior:] - self._bottom @ inner)
         return np.concatenate([inner - self._coupled @ border, border])
 
-    def solve_left(self, g):
+    def solve_left(self, g: np.ndarray) -> np.ndarray:
         """Return z with z^T M = g^T (no conjugation), (size, points) or (size,)."""
         if self.uneven:
             rows, columns = (scale.reshape(-1, *[1] * (g.ndim - 1)) for scale in self._scales)
             return rows * self._solved_left(columns * g)
         return self._solved_left(g)
 
-    def _solved_left(self, g):
+    def _solved_left(self, g: Any) -> Any:
         inner, border = g[: self._interior], g[self._interior:]
         border = self._border.T @ (border - self._coupled.T @ inner)
         return np.concatenate([self._inner(inner - self._bottom.T @ border, trans=1), border])
 
-    def _inner(self, right, trans=0):
+    def _inner(self, right: np.ndarray, trans: int = 0) -> np.ndarray:
         return self._solve(self._lu, self._lower, self._upper, right, self._pivots, trans=trans)[0]
 
 
-def _phase(diagonal, pivots):
+def _phase(diagonal: Any, pivots: Any) -> Any:
     """The determinant over its modulus of a band with this diagonal of U."""
     swaps = np.count_nonzero(pivots != np.arange(len(pivots)))
     phases = np.prod(diagonal / np.abs(diagonal))
@@ -170,7 +172,7 @@ class ManyFactors:
     `uneven` tells which points need scales, and have none here. What is singular gives numbers that are not finite.
     """
 
-    def __init__(self, bordered, weights):
+    def __init__(self, bordered: "Bordered", weights: np.ndarray) -> None:
         (band, right, bottom), self.uneven = bordered.sums(weights)
         places = bordered.places
         factor, self._solve = _BAND[band.dtype.kind]
@@ -180,26 +182,26 @@ class ManyFactors:
         self._coupled = np.array([self._inner(index, one) for index, one in enumerate(right)])
         self._schur = bottom[..., self._interior:] - self._bottom @ self._coupled
 
-    def phases(self):
+    def phases(self) -> np.ndarray:
         """Return the determinants over their moduli (points,)."""
         bands = [_phase(lu[sum(self._shape)], pivots) for lu, pivots in self._factors]
         return np.array(bands) * np.linalg.slogdet(self._schur)[0]
 
     @cached_property
-    def _border(self):
+    def _border(self) -> np.ndarray:
         try:
             return np.linalg.inv(self._schur)
         except np.linalg.LinAlgError:
             return np.full_like(self._schur, np.nan)
 
-    def solve(self, f):
+    def solve(self, f: Any) -> Any:
         """Return z with M z = f at every point."""
         f = f.T
         inner = np.array([self._inner(index, one) for index, one in enumerate(f[:, : self._interior])])[..., None]
         border = self._border @ (f[:, self._interior:, None] - self._bottom @ inner)
         return np.concatenate([inner - self._coupled @ border, border], axis=1)[..., 0].T
 
-    def solve_left(self, g):
+    def solve_left(self, g: np.ndarray) -> np.ndarray:
         """Return z with z^T M = g^T (no conjugation) at every point."""
         inner, border = g.T[:, None, : self._interior], g.T[:, None, self._interior:]
         border = (border - inner @ self._coupled) @ self._border
@@ -207,6 +209,6 @@ class ManyFactors:
         inner = np.array([self._inner(index, one, trans=1) for index, one in enumerate(inner)])
         return np.concatenate([inner, border[:, 0]], axis=1).T
 
-    def _inner(self, index, right, trans=0):
+    def _inner(self, index: int, right: np.ndarray, trans: int = 0) -> np.ndarray:
         lu, pivots = self._factors[index]
         return self._solve(lu, *self._shape, right, pivots, trans=trans)[0]

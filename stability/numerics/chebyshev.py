@@ -6,6 +6,7 @@ equation of the second kind: its matrix is banded where a is a polynomial, and w
 """
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev as C
@@ -14,18 +15,18 @@ FEW = 4  # coefficients of a series that an entry of its matrix depends on
 CHOP = 8 * np.finfo(float).eps  # of the largest coefficient of a series: less is taken for rounding
 
 
-def points(count):
+def points(count: int) -> np.ndarray:
     """First-kind Chebyshev points mapped to 0 < s < 1; shape (count,). The ends are never met."""
     return _points(count).copy()
 
 
 @lru_cache(maxsize=16)
-def _points(count):
+def _points(count: int) -> np.ndarray:
     return (1 + C.chebpts1(count)) / 2
 
 
 @lru_cache(maxsize=32)
-def basis(degree):
+def basis(degree: int) -> tuple[np.ndarray, ...]:
     """Return T-coefficients (T index, j) of phi_j and of d phi_j / ds, each (degree+1, degree+1)."""
     values = np.eye(degree + 1)
     values[1:, 1:] = C.chebint(np.eye(degree))[1:]
@@ -34,12 +35,12 @@ def basis(degree):
     return values, slopes
 
 
-def at(s, degree):
+def at(s: Any, degree: int) -> np.ndarray:
     """Return phi_0 .. phi_degree at the points 0 <= s <= 1; shape (points, degree+1)."""
     return C.chebvander(2 * np.atleast_1d(s) - 1, degree) @ basis(degree)[0]
 
 
-def transform(samples):
+def transform(samples: np.ndarray) -> np.ndarray:
     """T-coefficients (..., count) of the interpolants through samples (..., count) at `points(count)`.
 
     By a fast transform of the samples and their mirror image: it rounds far less than a product with a matrix.
@@ -51,7 +52,7 @@ def transform(samples):
     return (np.fft.rfft(mirrored)[..., :count] * _twist(count)).real
 
 
-def values(series):
+def values(series: Any) -> Any:
     """Values (..., count) at `points(count)` of T-coefficients (..., count)."""
     if np.iscomplexobj(series):
         return values(series.real) + 1j * values(series.imag)
@@ -62,14 +63,14 @@ def values(series):
 
 
 @lru_cache(maxsize=8)
-def _twist(count):
+def _twist(count: int) -> np.ndarray:
     """Factors (count,) that turn the waves of a mirrored sequence of 2 count samples into T-coefficients."""
     factor = np.exp(-0.5j * np.pi * np.arange(count) / count) / count
     factor[0] /= 2
     return factor
 
 
-def entries(series, slopes, count, degree):
+def entries(series: list[np.ndarray], slopes: list[bool], count: int, degree: int) -> tuple[np.ndarray, ...]:
     """Non-zero entries of the matrices from basis coefficients a_j to T-coefficients of a series times f or df/ds.
 
     `series` lists the T-coefficients of each factor, `slopes` tells which of them multiply df/ds. Returns arrays
@@ -83,7 +84,7 @@ def entries(series, slopes, count, degree):
     return tuple(np.concatenate(arrays) for arrays in zip(*found, strict=True))
 
 
-def cells(support, slope, count, degree):
+def cells(support: tuple[Any, ...], slope: bool, count: int, degree: int) -> tuple[np.ndarray, ...]:
     """Where the matrix of a series times f, or df/ds with `slope`, has entries, and how those follow from the series.
 
     `support` are the indices of its T-coefficients that are not 0. Returns row and column (cells,) and, for each of a
@@ -113,7 +114,7 @@ def cells(support, slope, count, degree):
     return row[kept], column[kept], np.where(weight, index, 0)[:, kept], weight[:, kept]
 
 
-def _band(reach, count, degree):
+def _band(reach: int, count: int, degree: int) -> tuple[np.ndarray, ...]:
     """Rows and columns (cells,) of the cells with |row - column| <= reach."""
     row = np.arange(count)[:, None]
     row, column = np.broadcast_arrays(row, row + np.arange(-reach, reach + 1))

@@ -12,13 +12,18 @@ At many wavenumbers each has its own factorisation and all else is done together
 (size, points) then, and plain (size,) at one.
 """
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..errors import ModeLost
 from .stack import square
+
+if TYPE_CHECKING:
+    from .bordered import Factors
 
 _EPS = np.finfo(float).eps
 _TINY = np.finfo(float).tiny
@@ -39,8 +44,8 @@ class Eigen:
     quotient is converged to rounding.
     """
 
-    rate: np.ndarray
-    slope: np.ndarray
+    rate: Any  # complex or real, an array or a number: as all numbers of it
+    slope: Any
     truncation: np.ndarray
     rounding: np.ndarray
     spread: np.ndarray
@@ -50,14 +55,15 @@ class Eigen:
     y: np.ndarray
     settled: np.ndarray
 
-    def split(self):
+    def split(self) -> "list[Eigen]":
         """Return the eigenvalues of the points, each on its own."""
         columns = {field.name: getattr(self, field.name) for field in fields(self)}
         columns |= {name: columns[name].tolist() for name in ("truncation", "rounding", "spread", "settled")}  # cheaper
         return [Eigen(*values) for values in zip(*columns.values(), strict=True)]
 
 
-def refine(pencil, weights, rate, x=None, y=None, bars=True, accuracy=VECTOR):
+def refine(pencil: Any, weights: Any, rate: complex, x: np.ndarray | None = None, y: np.ndarray | None = None,
+           bars: bool = True, accuracy: float = VECTOR) -> "Eigen":
     """Iterate from a `rate` (and vectors (size,), if known) until the quotient has settled; raise ModeLost if not.
 
     `weights` are those of one point, (parts,); so are all arrays in the result, without an axis of points. Vectors are
@@ -79,7 +85,8 @@ def refine(pencil, weights, rate, x=None, y=None, bars=True, accuracy=VECTOR):
     raise ModeLost(f"inverse iteration near rate {complex(rate):.6g} did not settle")
 
 
-def refine_many(pencil, weights, rate, x, y, bars=True, accuracy=VECTOR):
+def refine_many(pencil: Any, weights: Any, rate: np.ndarray | None, x: np.ndarray, y: np.ndarray, bars: bool = True,
+                accuracy: float = VECTOR) -> "Eigen":
     """Refine good guesses of rates (points,) and vectors (points, size) at many points, whose `weights` are given.
 
     Without `bars` the rounding is left at 0: a rough look does not need it. Without a rate the quotient of the vectors
@@ -108,7 +115,8 @@ def refine_many(pencil, weights, rate, x, y, bars=True, accuracy=VECTOR):
     return _quotient(pencil, weights, x, y, steps, settled, bars)
 
 
-def _iterate(b, factors, x, y, accuracy):
+def _iterate(b: tuple[Callable[..., Any], ...], factors: Any, x: np.ndarray, y: np.ndarray,
+             accuracy: float) -> tuple[Any, ...]:
     """Two inverse iterations from either side; return vectors, their last steps, and whether the quotient is settled.
 
     `b` are the products with B from the right and from the left.
@@ -118,7 +126,7 @@ def _iterate(b, factors, x, y, accuracy):
     return x, y, (x_step, y_step), _settled(x_error, y_error, accuracy)
 
 
-def _iterated(b, solve, vector):
+def _iterated(b: Callable[..., Any], solve: Callable[..., Any], vector: np.ndarray) -> tuple[Any, ...]:
     """Two inverse iterations with one factorisation; return the vector, the last step, and an estimate of the error.
 
     The step comes with the share of it that steps to come would make.
@@ -138,7 +146,7 @@ def _iterated(b, solve, vector):
     return second, (last, error / np.maximum(change, _TINY)), error
 
 
-def _twice(pencil, weights, found, bars):
+def _twice(pencil: Any, weights: Any, found: "Eigen", bars: bool) -> "Eigen":
     """The eigenvalue of uneven matrices by steps with the residual too; the difference joins its error.
 
     Small unknowns beside large ones get few digits from a factorisation alone. Where those steps do not settle, since
@@ -148,7 +156,7 @@ def _twice(pencil, weights, found, bars):
     return replace(again, spread=again.spread + abs(again.rate - found.rate)) if again.settled else found
 
 
-def _corrected(pencil, weights, found, bars):
+def _corrected(pencil: Any, weights: Any, found: "Eigen", bars: bool) -> "Eigen":
     """The eigenvalue by the iteration x - M^{-1} (A - rate B) x with one factorisation M near it (Neumaier 1985).
 
     M is nearly singular and a step with it mostly lies along the eigenvector: a change of scale, which is taken out.
@@ -177,12 +185,12 @@ def _corrected(pencil, weights, found, bars):
 
 
 @lru_cache(maxsize=32)
-def _start(size):
+def _start(size: int) -> np.ndarray:
     """Where to start without a better guess: a random vector (size,)."""
     return np.random.default_rng(1).standard_normal(size)
 
 
-def _factors(pencil, weights, rate):
+def _factors(pencil: Any, weights: np.ndarray, rate: Any) -> "Factors":
     for _ in range(3):
         try:
             return pencil.factors(weights, rate)
@@ -191,27 +199,27 @@ def _factors(pencil, weights, rate):
     raise ModeLost(f"the equations are singular near the rate {complex(rate):.6g}")
 
 
-def _converging(step, vectors, before):
+def _converging(step: np.ndarray, vectors: np.ndarray, before: Any) -> tuple[Any, ...]:
     """Relative length of the last step, and the error left, given the length of the step before."""
     change = _size(step) / _size(vectors)
     return change, change**2 / np.maximum(np.maximum(change, before), _TINY) + _EPS
 
 
-def _settled(x_error, y_error, accuracy=VECTOR):
+def _settled(x_error: Any, y_error: Any, accuracy: float = VECTOR) -> Any:
     """Whether two vectors with these errors are right to `accuracy`: their quotient then is to its square."""
     return np.maximum(x_error, y_error) < accuracy
 
 
-def _size(vectors):
+def _size(vectors: np.ndarray) -> Any:
     return np.sqrt(square(vectors).sum(axis=0) if vectors.ndim > 1 else np.vdot(vectors, vectors).real)
 
 
-def _rate(pencil, value):
+def _rate(pencil: Any, value: np.ndarray) -> Any:
     """Rayleigh quotients from the brackets of all parts (parts, points)."""
     return -value[: pencil.first_b].sum(axis=0) / value[pencil.first_b:].sum(axis=0)
 
 
-def _quotient(pencil, weights, x, y, steps, settled, bars):
+def _quotient(pencil: Any, weights: Any, x: np.ndarray, y: np.ndarray, steps: Any, settled: Any, bars: bool) -> "Eigen":
     """Rayleigh quotients of the pairs (y^H, x), (size, points) or of one (size,), with slope in k and errors.
 
     `steps` are the last ones of both vectors, with the shares of them that steps to come would make.
@@ -238,11 +246,11 @@ def _quotient(pencil, weights, x, y, steps, settled, bars):
     tail = np.abs(pencil.tail.total(pencil.tail.spread(weights.value * power), pencil.tail.times(x)))
     beyond = tail.reshape(len(pencil.last), -1, *norm.shape).sum(axis=1)
     truncation = (beyond * np.abs(y[pencil.last]).max(axis=1)).sum(axis=0)
-    vectors = (np.ascontiguousarray(rows.T) for rows in (x, y.conj()))
-    return Eigen(rate, slope, truncation, _EPS * np.sqrt(variance), spread, scatter, left, *vectors, settled)
+    right, adjoint = (np.ascontiguousarray(rows.T) for rows in (x, y.conj()))
+    return Eigen(rate, slope, truncation, _EPS * np.sqrt(variance), spread, scatter, left, right, adjoint, settled)
 
 
-def _changes(pencil, weights, slope, power, pair, steps):
+def _changes(pencil: Any, weights: Any, slope: Any, power: Any, pair: Any, steps: Any) -> Iterator[Any]:
     """Yield what steps dx and dy of the vectors of a `pair` (y, products with x), y B x = 1, do to the slope in k.
 
     With s = y L' x / (y B x), where L' is the derivative of A - rate B in k at a fixed rate, a change of x by dx makes

@@ -5,8 +5,10 @@ is down to rounding, or to a plateau of noise where the values are good to fewer
 confirm it: they see what lies between the sample points.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -33,7 +35,7 @@ _PROBES = 96
 class Rough(Exception):
     """The series of a function does not end; `index` tells which function, `s` where it is rough."""
 
-    def __init__(self, index, s):
+    def __init__(self, index: Any, s: Any) -> None:
         super().__init__(index, s)
         self.index, self.s = index, s
 
@@ -47,16 +49,16 @@ class Fit:
     cut: np.ndarray
 
     @property
-    def length(self):
+    def length(self) -> int:
         """Terms of the longest series."""
         return max(map(len, self.series), default=0)
 
-    def at(self, s):
+    def at(self, s: np.ndarray) -> np.ndarray:
         """Return the functions at the points s, (functions, points)."""
         return np.array([np.polynomial.chebyshev.chebval(2 * s - 1, one) for one in self.series])
 
 
-def fit(sample, together=False):
+def fit(sample: Callable[..., Any], together: bool = False) -> "Fit":
     """Return the `Fit` of functions given by `sample(s)`: an array (functions, points) at the points 0 < s < 1.
 
     What is rounding is told by the largest coefficient of each function, or of all `together` (elements of a matrix).
@@ -79,7 +81,7 @@ def fit(sample, together=False):
         count *= 2
 
 
-def _kept(size, largest):
+def _kept(size: Any, largest: Any) -> Any:
     """Which coefficients to keep, (functions, count); which series are short, and which have ended, (functions,)."""
     chop = chebyshev.CHOP * largest
     kept = size > chop[:, None]
@@ -97,7 +99,8 @@ def _kept(size, largest):
     return np.where(short[:, None], kept, longer), short, flat | rounded
 
 
-def _left_out(values, chopped, largest, short):
+def _left_out(values: np.ndarray, chopped: np.ndarray, largest: np.ndarray,
+              short: np.ndarray) -> tuple[np.ndarray, ...]:
     """What the series leave out at most, (functions,), and whether they meet the probes."""
     count, every = chopped.shape[1], short.all()
     reach = _SHORT if every else count
@@ -109,7 +112,7 @@ def _left_out(values, chopped, largest, short):
     return cut, stray <= np.maximum(_ROUNDING * largest, _STRAY * inside)
 
 
-def _rough(values, series, chopped, ended, met):
+def _rough(values: Any, series: Any, chopped: Any, ended: Any, met: Any) -> Any:
     """The first function that has not ended, and where the upper half of its series (or the probes) stands out."""
     count = series.shape[1]
     index = int(np.argmin(ended & met))
@@ -121,7 +124,7 @@ def _rough(values, series, chopped, ended, met):
 
 
 @lru_cache(maxsize=8)
-def _probes(count=1):
+def _probes(count: int = 1) -> tuple[np.ndarray, ...]:
     """Points (probes,) between the sample points, and T_0 .. T_{count-1} at them, (count, probes)."""
     step, prime = _LATTICE
     angle = step * np.arange(1, _PROBES + 1) % prime
@@ -129,7 +132,7 @@ def _probes(count=1):
     return (1 + np.cos(np.pi * angle / prime)) / 2, np.cos(np.pi * angles / prime)
 
 
-def _trimmed(series, kept):
+def _trimmed(series: Any, kept: Any) -> Any:
     """Every series up to its last term, real where it is real; 0 where there is none."""
     ends = (kept.shape[1] - kept[:, ::-1].argmax(axis=1)) * kept.any(axis=1)
     imaginary = series.imag.any(axis=1) if np.iscomplexobj(series) else np.zeros(len(series), bool)

@@ -3,7 +3,9 @@
 Vectors are the columns of arrays (size, points): one product serves all points, whatever their scalars.
 """
 
+from collections.abc import Callable
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy.sparse import csc_array, csr_array
@@ -18,7 +20,8 @@ class Lines:
     tell which it is.
     """
 
-    def __init__(self, part, row, column, parts, shape):
+    def __init__(self, part: np.ndarray, row: np.ndarray, column: np.ndarray, parts: int,
+                 shape: tuple[int, ...]) -> None:
         key = part * shape[0] + (shape[0] - 1 - row)  # small coefficients first: sums lose less to rounding
         self._order = np.argsort(key, kind="stable")
         key = key[self._order]
@@ -28,11 +31,11 @@ class Lines:
                                  (len(first), shape[1]))
         self._parts, self._rows = parts, shape[0]
 
-    def matrix(self, value):
+    def matrix(self, value: np.ndarray) -> Any:
         """The sparse matrix (lines, columns) of entries with these values (entries,)."""
         return with_data(self._places, value[self._order])
 
-    def to_rows(self, values):
+    def to_rows(self, values: np.ndarray) -> np.ndarray:
         """Sums of the values (lines, ...) of each row, (rows, ...)."""
         if self._by_row is not None:
             return self._by_row @ values
@@ -41,14 +44,14 @@ class Lines:
         return total
 
     @cached_property
-    def _by_row(self):
+    def _by_row(self) -> Any:
         """Matrix (rows, lines) that sums the lines of each row, None where there is at most one."""
         count = len(self.row)
         if len(np.unique(self.row)) == count:
             return None
         return csc_array((np.ones(count), self.row, np.arange(count + 1)), (self._rows, count))
 
-    def to_parts(self, values):
+    def to_parts(self, values: np.ndarray) -> np.ndarray:
         """Sums of the values (lines, ...) of each part, (parts, ...), a block of lines at a time.
 
         Partial sums stay short: one sum over all lines would lose a digit to rounding at a large degree.
@@ -59,7 +62,7 @@ class Lines:
         return total
 
     @cached_property
-    def _by_part(self):
+    def _by_part(self) -> tuple[np.ndarray, ...]:
         """First lines of the blocks, first blocks of the parts that have any, and which parts those are."""
         parts = np.unique(self.part)
         starts = np.searchsorted(self.part, parts)
@@ -70,54 +73,54 @@ class Lines:
 class Stack:
     """Matrices whose entries lie where `lines` says and have the values `value` (entries,)."""
 
-    def __init__(self, lines, value):
+    def __init__(self, lines: "Lines", value: np.ndarray) -> None:
         self._lines, self._matrix = lines, lines.matrix(value)
 
     @cached_property
-    def _transposed(self):
+    def _transposed(self) -> Any:
         return self._matrix.T
 
     @cached_property
-    def _squares(self):
+    def _squares(self) -> Any:
         return with_data(self._matrix, square(self._matrix.data))
 
-    def times(self, x):
+    def times(self, x: np.ndarray) -> np.ndarray:
         """Products of every part with x: (lines, points), for the methods below."""
         return self._matrix @ x
 
-    def spread(self, weights):
+    def spread(self, weights: np.ndarray) -> np.ndarray:
         """Weights (parts, points) of the lines: (lines, points), for the methods below."""
         return weights[self._lines.part]
 
-    def total(self, spread, products):
+    def total(self, spread: np.ndarray, products: np.ndarray) -> np.ndarray:
         """Sum over the parts, weights times products with x: (rows, points)."""
         return self._lines.to_rows(spread * products)
 
-    def total_left(self, spread, y):
+    def total_left(self, spread: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Sum over the parts, weights times y^T part: (columns, points)."""
         return self._transposed @ (spread * y[self._lines.row])
 
-    def summed(self, weights):
+    def summed(self, weights: np.ndarray) -> tuple[Callable[..., Any], ...]:
         """Products of the sum of the parts, times weights (parts, ...), with vectors: functions of x, and of y."""
         spread = self.spread(weights)
         return lambda x: self.total(spread, self.times(x)), lambda y: self.total_left(spread, y)
 
-    def brackets(self, y, products):
+    def brackets(self, y: np.ndarray, products: np.ndarray) -> np.ndarray:
         """y^T part x for every part: (parts, points)."""
         return self._lines.to_parts(y[self._lines.row] * products)
 
-    def squares(self, weights, y, x):
+    def squares(self, weights: np.ndarray, y: np.ndarray, x: np.ndarray) -> Any:
         """Sum over the entries of all parts of |weight y_i entry_ij x_j|^2: (points,)."""
         return (self.spread(square(weights)) * square(y)[self._lines.row] * (self._squares @ square(x))).sum(axis=0)
 
 
-def with_data(matrix, data):
+def with_data(matrix: Any, data: np.ndarray) -> Any:
     """A sparse matrix with entries in the same places; what holds these was checked when the other was made."""
     other = object.__new__(type(matrix))
     other.__dict__.update(matrix.__dict__, data=data)
     return other
 
 
-def square(z):
+def square(z: Any) -> Any:
     """|z|^2, without the root that abs takes."""
     return z.real**2 + z.imag**2 if np.iscomplexobj(z) else z**2

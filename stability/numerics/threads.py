@@ -7,7 +7,7 @@ finite is never called resolved: no warning has to say so.
 from collections.abc import Callable
 from functools import lru_cache, wraps
 from threading import Lock
-from typing import ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 import threadpoolctl
@@ -33,16 +33,16 @@ def one_thread(function: Callable[_Arguments, _Result]) -> Callable[_Arguments, 
 class _Shared:
     """One BLAS thread, set by the first that enters and lifted by the last that leaves, in whatever threads."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._lock, self._inside = Lock(), 0
 
-    def __enter__(self):
+    def __enter__(self) -> None:
         with self._lock:
             if not self._inside:
                 self._limit = _unclaimed(lambda: _controller().limit(limits=1, user_api="blas"))
             self._inside += 1
 
-    def __exit__(self, *failure):
+    def __exit__(self, *failure: Any) -> None:
         with self._lock:
             self._inside -= 1
             if not self._inside:
@@ -52,7 +52,7 @@ class _Shared:
 _ONE = _Shared()
 
 
-def _unclaimed(change):
+def _unclaimed(change: Callable[..., Any]) -> Any:
     """Make a change to the number of threads that any other thread may undo.
 
     Since version 3.8 of threadpoolctl the first thread that sets the number claims it; others do nothing, silently.
@@ -68,5 +68,5 @@ def _unclaimed(change):
 
 
 @lru_cache(maxsize=1)
-def _controller():
+def _controller() -> Any:
     return threadpoolctl.ThreadpoolController()

@@ -138,7 +138,7 @@ def known(name: str) -> bool:
     return name in _VARYING or _explained_as(name) in COLUMNS
 
 
-def _explained_as(name):
+def _explained_as(name: str) -> str:
     return ANY_DEGREE if name.startswith("degree_") else name
 
 

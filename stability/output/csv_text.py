@@ -22,21 +22,21 @@ def read_csv(path: Any, name: str) -> tuple[dict[str, Any], dict[str, list[Any]]
     return parse_csv(text_of(read_bytes(path, name), path, name), path, name)
 
 
-def read_bytes(path, name):
+def read_bytes(path: Any, name: Any) -> Any:
     try:
         return Path(path).read_bytes()
     except OSError as reason:
         raise ParameterError(f"{name}: cannot read {path!r}: {reason.strerror}") from None
 
 
-def text_of(content, path, name):
+def text_of(content: Any, path: Any, name: Any) -> Any:
     try:
         return content.decode("utf-8").removeprefix(_MARK)
     except UnicodeDecodeError:
         raise ParameterError(f"{name}: {path!r} is neither text nor netCDF 3") from None
 
 
-def parse_csv(text, path, name):
+def parse_csv(text: Any, path: Any, name: Any) -> Any:
     lines = [line for line in io.StringIO(text, newline="") if line.strip()]
     comments = [line[1:].strip().partition(": ") for line in lines if line.startswith("#")]
     header = {key.strip(): _one(value) for key, colon, value in comments if colon}
@@ -53,11 +53,11 @@ def parse_csv(text, path, name):
     return header, {key.strip(): _typed(values) for key, values in zip(names, zip(*rows, strict=True), strict=True)}
 
 
-def _one(cell):
+def _one(cell: Any) -> Any:
     return _typed([cell])[0]
 
 
-def _typed(cells):
+def _typed(cells: Any) -> Any:
     """The cells of a column as integers, floats, lists or texts, whichever all of them are; None where one is empty."""
     for kind in (int, float, _list):
         try:
@@ -67,11 +67,11 @@ def _typed(cells):
     return list(cells)
 
 
-def no_nan(value):
+def no_nan(value: Any) -> Any:
     return None if isinstance(value, float) and isnan(value) else value
 
 
-def _list(cell):
+def _list(cell: Any) -> Any:
     if not cell.startswith("["):
         raise ValueError(cell)
     return json.loads(cell)

@@ -62,7 +62,7 @@ class Look:
         return notes
 
 
-def _values(panel, which):
+def _values(panel: Any, which: Any) -> Any:
     """What is drawn along an axis of a panel."""
     if isinstance(panel, Grid):
         grids = {axis.name: values for axis, values in panel.axes}

@@ -18,7 +18,7 @@ _FEW_TICKS, _MANY = (2, 5), (1.5, 2, 3, 5, 7)  # ticks between powers of ten
 _LEAST_SHADE = 1e-2  # of the largest: below, colours of signed values are linear
 
 
-def draw_grid(axis, grid: Grid, line_options):
+def draw_grid(axis: Any, grid: Grid, line_options: dict[Any, Any]) -> None:
     """Draw a Grid over one or two axes into a matplotlib Axes."""
     if len(grid.axes) == 1:
         _lines(axis, grid, line_options)
@@ -27,14 +27,14 @@ def draw_grid(axis, grid: Grid, line_options):
     axis.set(xlabel=grid.x.label, ylabel=grid.y.label)
 
 
-def states(status):
+def states(status: np.ndarray) -> dict[str, np.ndarray]:
     """Which points are to be hatched, {state: array shaped as the status}."""
     settled, stable, outgrown = (np.vectorize(test, otypes=[bool])(status) for test in
                                  (is_settled, is_stable, is_outgrown))
     return dict(zip(HATCHES, (~settled, stable, outgrown), strict=True))
 
 
-def legend_of(grid: Grid):
+def legend_of(grid: Grid) -> tuple[list[Any], ...]:
     """Handles and labels of what is marked in a figure of grids: doubtful points, and jumps over two axes."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
@@ -46,7 +46,7 @@ def legend_of(grid: Grid):
     return handles, [handle.get_label() for handle in handles]
 
 
-def _lines(axis, grid, line_options):
+def _lines(axis: Any, grid: Any, line_options: Any) -> None:
     (_, values), = grid.axes
     y = grid.values
     order = np.argsort(values, kind="stable")
@@ -69,7 +69,7 @@ def _lines(axis, grid, line_options):
     _set_infinity_apart(axis, "x", values, GREY, 0.6)
 
 
-def _colours(axis, grid):
+def _colours(axis: Any, grid: Grid) -> None:
     sides = [values for _, values in grid.axes]
     y, x = (_places(values) for values in sides)
     image = mesh(axis, x, y, grid.values)
@@ -86,7 +86,7 @@ def _colours(axis, grid):
         _set_infinity_apart(axis, which, values, "w", 3.0)
 
 
-def mesh(axis, x, y, values):
+def mesh(axis: Any, x: np.ndarray, y: np.ndarray, values: np.ndarray) -> Any:
     """Colour the cells around the points of a grid, values (len(y), len(x)); nan stays white. Return the image."""
     from matplotlib.colors import LogNorm, Normalize, SymLogNorm
 
@@ -107,7 +107,7 @@ def mesh(axis, x, y, values):
     return image
 
 
-def _places(values):
+def _places(values: np.ndarray) -> np.ndarray:
     """Where the values are drawn: infinity as far beyond the largest of the others as its cell is wide."""
     finite = np.unique(values[np.isfinite(values)])
     if not len(finite):
@@ -117,7 +117,7 @@ def _places(values):
     return np.where(np.isinf(values), beyond, values)
 
 
-def _set_infinity_apart(axes, which, values, color, width):
+def _set_infinity_apart(axes: Any, which: str, values: np.ndarray, color: str, width: float) -> None:
     """Draw a line before the cell of infinity, which has a tick of its own; the others end there."""
     if not np.isinf(values).any():
         return
@@ -134,7 +134,7 @@ def _set_infinity_apart(axes, which, values, color, width):
         axis.set_ticks(ticks, labels, minor=minor)
 
 
-def _scale(axes, which, values):
+def _scale(axes: Any, which: str, values: np.ndarray) -> None:
     """Logarithmic where the values are; plain numbers where they span no decades."""
     from matplotlib.ticker import LogLocator, StrMethodFormatter
 
@@ -147,7 +147,7 @@ def _scale(axes, which, values):
             axis.set_minor_formatter(StrMethodFormatter("{x:g}"))
 
 
-def hatch(axis, x, y, where, pattern, color="k"):
+def hatch(axis: Any, x: np.ndarray, y: np.ndarray, where: np.ndarray, pattern: str, color: str = "k") -> None:
     """Hatch the cells around the points `where` (len(y), len(x)) is true."""
     from matplotlib.collections import PolyCollection
 
@@ -160,7 +160,7 @@ def hatch(axis, x, y, where, pattern, color="k"):
                             autolim=False)
 
 
-def jumps(axis, x, y, along_y, along_x, color=RED):
+def jumps(axis: Any, x: Any, y: Any, along_y: Any, along_x: Any, color: Any = RED) -> None:
     """Draw the cell edges across which the branch changes: `along_y` (len(y) - 1, len(x)), `along_x` alike."""
     from matplotlib.collections import LineCollection
 
@@ -171,7 +171,7 @@ def jumps(axis, x, y, along_y, along_x, color=RED):
                         autolim=False)
 
 
-def branch_changes(found):
+def branch_changes(found: Any) -> list[np.ndarray]:
     """For each axis of a map of k_max, between which neighbours k_max jumps to another branch, axes sorted.
 
     That is where the maximum of one point continues the second maximum of its neighbour better than its first.
@@ -187,12 +187,12 @@ def branch_changes(found):
     return changes
 
 
-def _neighbours(values, axis):
+def _neighbours(values: np.ndarray, axis: int) -> tuple[np.ndarray, ...]:
     count = values.shape[axis]
     return np.take(values, range(count - 1), axis), np.take(values, range(1, count), axis)
 
 
-def cell_edges(values):
+def cell_edges(values: np.ndarray) -> np.ndarray:
     """Edges (count + 1,) of cells around sorted values, half-way between them, in the logarithm where that is even."""
     if is_logarithmic(values):
         return np.exp(cell_edges(np.log(values)))

@@ -45,14 +45,14 @@ class Overlay:
         parts = [x[known][order], y[known][order], *(None if bar is None else bar[order] for bar in bars)]
         return Curve(parts[0], parts[1], self.label, kind, parts[2], parts[3])
 
-    def _error(self, name, upwards):
+    def _error(self, name: Any, upwards: Any) -> Any:
         names = [pattern.format(name) for pattern in _ERRORS]
         names += ["error"] if name == self.bounded or self.bounded is None and upwards else []
         found = next((self.columns[one] for one in names if one in self.columns), None)
         return found if found is not None and found.dtype.kind == "f" else None
 
 
-def _numbers(column):
+def _numbers(column: Any) -> Any:
     return np.isfinite(column) if column.dtype.kind == "f" else np.ones(len(column), dtype=bool)
 
 
@@ -67,7 +67,7 @@ def read_overlay(text: str, name: str = "--overlay") -> Overlay:
     return Overlay(repr(path), arrays, label, "method" in header, bounded)
 
 
-def _parts(text):
+def _parts(text: Any) -> Any:
     """The file and the label of FILE:LABEL; a colon may belong to the name of the file."""
     if os.path.exists(text) or ":" not in text:
         return text, os.path.basename(text).rpartition(".")[0] or os.path.basename(text)
@@ -76,7 +76,7 @@ def _parts(text):
     return text[:place], text[place + 1:] or None
 
 
-def _column(values):
+def _column(values: Any) -> Any:
     """An array of a column: numbers with nan where there is none, or texts."""
     if all(value is None or isinstance(value, (int, float)) for value in values):
         return np.array([np.nan if value is None else value for value in values], dtype=float)

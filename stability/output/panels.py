@@ -140,7 +140,7 @@ def swept_curves(x: Iterable[float], y: Iterable[float], level: str, label: str 
                     for one in pairs[~finite, 1].tolist())
 
 
-def _chosen(part, where):
+def _chosen(part: Any, where: np.ndarray) -> Any:
     kept = [one for one, take in zip(part, where.tolist(), strict=True) if take]
     return tuple(kept) if isinstance(part, tuple) else np.array(kept, dtype=float)
 
@@ -150,7 +150,7 @@ def merged(panels: Sequence[tuple[Panel, ...]], labels: Sequence[str]) -> tuple[
     return tuple(_merged_one(same, labels) for same in zip(*panels, strict=True))
 
 
-def _merged_one(panels, labels):
+def _merged_one(panels: Any, labels: Any) -> Any:
     curves: list[Curve] = []
     told: set[str | None] = set()
     for panel, label in zip(panels, labels, strict=True):
@@ -167,7 +167,7 @@ def _merged_one(panels, labels):
                    x=_axis([panel.x for panel in panels]), y=_axis([panel.y for panel in panels]))
 
 
-def _axis(axes):
+def _axis(axes: Any) -> Any:
     """The same axis of several panels, logarithmic where all of them are."""
     scales = {axis.scale for axis in axes}
     return axes[0] if len(scales) == 1 else replace(axes[0], scale="linear")

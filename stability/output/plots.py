@@ -18,6 +18,8 @@ from .style import COLOURS, FONTS, GREY, MARKERS, RED, STYLE
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from .panels import Curve
+
 _SIZE = 6.4, 2.8  # inches, unless a Look says otherwise
 _NARROW, _SMALL = 5.0, 7  # inches of width below which the font has this size
 _ASIDE = 1.2  # ratio of width and height from which panels stand side by side
@@ -34,7 +36,7 @@ _DOUBTS = ((lambda status: not is_settled(status), "x", "not resolved"),
            (is_outgrown, "+", "outgrown by an internal mode"))
 
 
-def draw(record, path, look: Look | None = None) -> list[str]:
+def draw(record: Any, path: Any, look: Look | None = None) -> list[str]:
     """Draw the panels of a Record into the file `path`; return what there is to say of it, a sentence each."""
     import matplotlib
     from matplotlib.figure import Figure
@@ -88,7 +90,7 @@ def draw_one(axis: "Axes", panel: Any, line_options: Any = None) -> None:
         _panel(axis, panel, line_options or {})
 
 
-def _panel(axis, panel: Panel, line_options):
+def _panel(axis: Any, panel: Panel, line_options: dict[Any, Any]) -> None:
     fresh = not axis.has_data()
     if panel.zero and not any(line.get_label() == "_zero" for line in axis.lines):
         line = axis.axhline if panel.zero == "y" else axis.axvline
@@ -107,13 +109,13 @@ def _panel(axis, panel: Panel, line_options):
         axis.set(**panel.limits)
 
 
-def set_scale(axis, which, scale):
+def set_scale(axis: Any, which: str, scale: str) -> None:
     """Set the scale of an axis; symmetric logarithms are linear next to zero."""
     if scale != "linear":
         getattr(axis, f"set_{which}scale")(scale, **({"linthresh": 1e-2} if scale == "symlog" else {}))
 
 
-def _curve(axis, curve, colour, line_options):
+def _curve(axis: Any, curve: Any, colour: Any, line_options: Any) -> Any:
     """Draw a curve in a colour, or in the next one of the axes; return its colour."""
     if curve.kind == BARS:
         return axis.barh(curve.y, curve.x, **{"color": COLOURS[0], "label": curve.label, **line_options})[0]
@@ -135,7 +137,7 @@ def _curve(axis, curve, colour, line_options):
     return line.get_color()
 
 
-def _bars(axis, curve, colour):
+def _bars(axis: Any, curve: "Curve", colour: str) -> None:
     """Error bars that are long enough to be seen."""
     errors = {}
     for name, values, bars in (("xerr", curve.x, curve.x_error), ("yerr", curve.y, curve.y_error)):
@@ -149,7 +151,7 @@ def _bars(axis, curve, colour):
                       linestyle="", marker="", **errors)
 
 
-def _doubts(axis, curve, colour):
+def _doubts(axis: Any, curve: Any, colour: Any) -> None:
     for test, marker, label in _DOUBTS:
         where = np.array([test(status) for status in curve.status], dtype=bool)
         if where.any():
@@ -159,7 +161,7 @@ def _doubts(axis, curve, colour):
                       markevery=every, label=None if told else label)
 
 
-def _legends(figure, axes, panels):
+def _legends(figure: Any, axes: list[Any], panels: list[Any]) -> None:
     """One legend below the figure where all panels have the same, and one in each otherwise."""
     found = [axis.get_legend_handles_labels() for axis in axes]
     grids = [panel for panel in panels if isinstance(panel, Grid)]

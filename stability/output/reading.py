@@ -50,12 +50,12 @@ def load(path: Any) -> Stored:
     return Stored(header, _rows(columns))
 
 
-def _rows(columns):
+def _rows(columns: Any) -> Any:
     rows = (dict(zip(columns, values, strict=True)) for values in zip(*columns.values(), strict=True))
     return tuple(map(_told, rows))
 
 
-def _told(row):
+def _told(row: Any) -> Any:
     """A row with its status as one, not as a text."""
     return {**row, "status": status_of(row["status"])} if isinstance(row.get("status"), str) else row
 
@@ -63,7 +63,7 @@ def _told(row):
 # -- JSON ------------------------------------------------------------------------------------------------
 
 
-def _json(text, path):
+def _json(text: Any, path: Any) -> Any:
     try:
         content = json.loads(text)
     except ValueError as reason:
@@ -76,7 +76,7 @@ def _json(text, path):
     return Stored({**first, **parameters, **header}, tuple(_told(_infinite(row)) for row in content["rows"]))
 
 
-def _infinite(values):
+def _infinite(values: Any) -> Any:
     """JSON has no infinity: it is written as a string."""
     return {key: _INFINITE.get(value, value) if isinstance(value, str) else value for key, value in values.items()}
 
@@ -84,7 +84,7 @@ def _infinite(values):
 # -- netCDF ----------------------------------------------------------------------------------------------
 
 
-def _netcdf(content):
+def _netcdf(content: Any) -> Any:
     from scipy.io import netcdf_file  # slow to import
 
     with netcdf_file(io.BytesIO(content), mmap=False) as file:
@@ -100,7 +100,7 @@ def _netcdf(content):
     return Stored(header, _rows(_columns(variables, main)))
 
 
-def _columns(variables, main):
+def _columns(variables: Any, main: Any) -> Any:
     """Columns as long as the table: those along one axis of a grid are repeated over the others."""
     places = {name: values.tolist() for name, (dimensions, values) in variables.items() if dimensions == (name,)}
     columns: dict[str, list[Any]] = {}
@@ -125,13 +125,13 @@ def _columns(variables, main):
     return columns
 
 
-def _before_last(columns, name, values):
+def _before_last(columns: Any, name: Any, values: Any) -> Any:
     """The columns with one more before the status."""
     *others, last = columns.items()
     return {**dict(others), name: values, last[0]: last[1]} if last[0] == "status" else {**columns, name: values}
 
 
-def _variable(variable):
+def _variable(variable: Any) -> Any:
     """Dimensions and values; of texts without that of their characters."""
     values = variable[:]
     if values.dtype.kind != "S":
@@ -140,7 +140,7 @@ def _variable(variable):
     return variable.dimensions[:-1], np.array(texts, dtype=object).reshape(values.shape[:-1])
 
 
-def _scalar(value):
+def _scalar(value: Any) -> Any:
     if isinstance(value, bytes):
         return value.decode()
     return float(np.asarray(value).ravel()[0])

@@ -137,15 +137,15 @@ class Stored(Record):
                            self._curves(x, y, header.get("each"), MARKED if "over" in header else LINE),
                            zero="y" if y == "growth_rate" and x == "k" else "") for y in self._drawn([x]))
 
-    def _drawn(self, but):
+    def _drawn(self, but: Any) -> Any:
         found = [name for name in (self.about_it.get("vary"), *_DRAWN) if name in self.table[0] and name not in but]
         return found[:2] or [name for name in self.table[0] if isinstance(self.table[0][name], float)][1:2]
 
-    def _numbers(self, name, rows=None):
+    def _numbers(self, name: Any, rows: Any = None) -> Any:
         values = [row[name] for row in (self.table if rows is None else rows)]
         return np.array([np.nan if value is None else value for value in values], dtype=float)
 
-    def _curves(self, x, y, each, kind):
+    def _curves(self, x: Any, y: Any, each: Any, kind: Any) -> Any:
         """A curve for each value of the column `each`, or a single one."""
         curves: list[Curve] = []
         for value in dict.fromkeys(row[each] for row in self.table) if each else (None,):
@@ -161,7 +161,7 @@ class Stored(Record):
                                    f"{self._symbol(x)} = {value_text(float('inf'))}", label, kind, status=status)
         return tuple(curves)
 
-    def _grid(self, axes, quantity):
+    def _grid(self, axes: Any, quantity: Any) -> Any:
         places = [np.array(list(dict.fromkeys(row[name] for row in self.table)), dtype=float) for name in axes]
         if len(axes) > 2:
             raise ParameterError(f"only maps over one or two axes are drawn (this one has {', '.join(axes)})")
@@ -171,7 +171,7 @@ class Stored(Record):
                     self._axis(quantity), self._numbers(quantity).reshape(shape), states(status),
                     signed=quantity == "growth_rate")
 
-    def _axis(self, name):
+    def _axis(self, name: Any) -> Any:
         if name == "growth_rate" and "k_max" in self.table[0]:
             return GROWTH_AT_K_MAX
         if name == self.about_it.get("vary"):
@@ -179,17 +179,17 @@ class Stored(Record):
         known = isinstance(self.flow, str) or name not in [item.name for item in fields(self.flow)]
         return _AXES.get(name) or Axis(name, symbol(name) if known else axis_label(self.flow, name))
 
-    def _symbol(self, name):
+    def _symbol(self, name: Any) -> Any:
         return symbol(name) if isinstance(self.flow, str) else symbol_of(self.flow, name)
 
 
-def _flat(header):
+def _flat(header: Any) -> Any:
     """A header with parameters among the rest, and without notes."""
     parameters = header.get("parameters", {})
     return {**parameters, **{key: value for key, value in header.items() if key not in ("parameters", "notes")}}
 
 
-def _plain_rows(rows):
+def _plain_rows(rows: Any) -> Any:
     return [{key: [list(pair) for pair in value] if isinstance(value, list) else value for key, value in row.items()}
             for row in rows]
 

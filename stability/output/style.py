@@ -14,7 +14,7 @@ MARKERS = "o", "s", "^", "D", "v"
 CURVES = len(COLOURS) * len(LINES)  # that differ in colour or line style
 
 
-def _cycle():
+def _cycle() -> Any:
     """All pairs of colours and line styles: their numbers have no common divisor."""
     return cycler(**{name: list(islice(forever(values), CURVES)) for name, values in
                      (("color", COLOURS), ("linestyle", LINES))})

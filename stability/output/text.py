@@ -55,7 +55,7 @@ def render(form: str, header: dict[str, Any], rows: list[Row], width: int | None
     return table(rows, width)
 
 
-def _json_value(value):
+def _json_value(value: Any) -> Any:
     """JSON has no infinity: write it as the string that the command line takes."""
     if isinstance(value, dict):
         return {key: _json_value(item) for key, item in value.items()}
@@ -64,7 +64,7 @@ def _json_value(value):
     return str(value) if isinstance(value, float) and isinf(value) else value
 
 
-def _csv(header, rows):
+def _csv(header: dict[str, Any], rows: list[Any]) -> str:
     text = io.StringIO()
     for key in _FIRST:
         text.write(f"# {key}: {header[key]}\n")
@@ -92,13 +92,13 @@ def table(rows: list[Row], width: int | None = None) -> str:
     return "\n".join(_table(part, *_LAYOUTS[-1]) for part in _blocks(rows, width))
 
 
-def _width(rows, text):
+def _width(rows: Any, text: Any) -> Any:
     """Length of the longest line of a table; of a long status the length of a short one."""
     return max(len(line) - max(len(str(row.get("status", ""))) - len(RESOLVED), 0)
                for line, row in zip(text.splitlines(), (rows[0], *rows), strict=True))
 
 
-def _blocks(rows, width):
+def _blocks(rows: Any, width: Any) -> Iterator[Any]:
     """Yield the rows with as many of their columns as fit, each time after the first ones."""
     names = list(rows[0])
     labels, rest = names[:_LABELS], names[_LABELS:]
@@ -113,7 +113,7 @@ def _blocks(rows, width):
         rest = rest[count:]
 
 
-def _table(rows, digits, gap):
+def _table(rows: list[Any], digits: int, gap: int) -> str:
     cells = [[_cell(key, value, digits) for key, value in row.items()] for row in rows]
     columns = list(zip(list(rows[0]), *cells, strict=True))
     widths = [max(len(cell) for cell in column) for column in columns]
@@ -134,7 +134,7 @@ def html_table(title: str, rows: list[Row], gap: int | None = None) -> str:
     return f"<table>\n<caption>{escape(title)}</caption>\n{body}</table>"
 
 
-def _cell(key, value, digits):
+def _cell(key: str, value: Any, digits: int) -> str:
     if value is None:
         return "-"
     if isinstance(value, list) and digits <= _FEW_DIGITS:
@@ -177,7 +177,7 @@ def check_writable(path: str | os.PathLike[str], name: str) -> None:
     _check_target(target, name)
 
 
-def _check_target(path, name):
+def _check_target(path: Any, name: str) -> None:
     """Raise the error that replacing `path` would raise."""
     try:
         why = "it is a directory" if S_ISDIR(os.stat(path).st_mode) else ""
@@ -187,16 +187,16 @@ def _check_target(path, name):
         raise ParameterError(f"{name}: cannot write {str(path)!r}: {why}")
 
 
-def _path(path, name):
+def _path(path: Any, name: Any) -> Any:
     return Path(check_file_name(path, f"{name}: path"))
 
 
-def _is_stream(path):
+def _is_stream(path: Any) -> bool:
     """Whether the path is a device or a pipe: written to directly, and never replaced."""
     return os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path)
 
 
-def _temporary(path, name):
+def _temporary(path: Any, name: str) -> Any:
     """An empty file beside the target of `path`, with the beginning of its name and its ending."""
     target = Path(os.path.realpath(path))
     start, ending = (os.fsencode(part)[:_PREFIX].decode(errors="ignore") for part in (target.name, path.suffix))
@@ -208,7 +208,7 @@ def _temporary(path, name):
     return Path(temporary)
 
 
-def _umask():
+def _umask() -> int:
     mask = os.umask(0)
     os.umask(mask)
     return mask

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -15,6 +15,10 @@ from ..output.panels import Axis, Curve, Panel
 from ..output.record import Record
 from ..output.text import Row
 from ..status import RESOLVED
+
+if TYPE_CHECKING:
+    from ..equations.layer import Layer
+    from ..flows.base import Flow
 
 HEIGHT = Axis("z", "height $z$")
 VELOCITY, SHEAR_RATE = Axis("U", "velocity $U$"), Axis("dU", "shear rate $U'$")
@@ -111,7 +115,7 @@ def base_flow(flow: Any, points: int = HEIGHTS) -> BaseFlow:
     return BaseFlow(flow, tuple(names), columns, flux)
 
 
-def _profiles(flow, layer, s, bottom):
+def _profiles(flow: "Flow", layer: "Layer", s: np.ndarray, bottom: float) -> dict[str, np.ndarray]:
     """The columns of one layer, {name: (points,)}."""
     with np.errstate(divide="ignore", invalid="ignore"):
         base, z = layer.base(s), bottom + layer.height(s)
@@ -124,9 +128,9 @@ def _profiles(flow, layer, s, bottom):
     return {name: np.broadcast_to(np.asarray(value, dtype=float), s.shape) + 0.0 for name, value in found.items()}
 
 
-def _flux(flow, layer, bottom):
+def _flux(flow: "Flow", layer: "Layer", bottom: float) -> float:
     """The integral of U over the layer."""
-    def sample(s):
+    def sample(s: np.ndarray) -> np.ndarray:
         base = layer.base(s)
         velocity = flow.state(layer.name, bottom + layer.height(s), base)["U"]
         return np.broadcast_to(np.asarray(velocity * base.dz, dtype=float), (1, len(s)))

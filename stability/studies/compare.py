@@ -5,10 +5,11 @@ the way from the long-wave limit, error bars where a method has them. A dense so
 neighbours and is timed alone. Each time is the shortest of several runs.
 """
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from math import inf
 from time import monotonic, process_time
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -27,6 +28,10 @@ from ..output.text import Row
 from ..status import INTERRUPTED, RESOLVED
 from .dispersion import dispersion
 from .spectrum import spectrum
+
+if TYPE_CHECKING:
+    from ..flows.base import Flow
+    from ..modes.mode import Mode
 
 COLLOCATION_DEGREES = tuple(degree for degree in DEGREES if degree <= 128)
 DENSE_DEGREES = (8, 12, 16, 24, 32, 48, 64, 96, 128)
@@ -123,7 +128,8 @@ class Comparison(Record):
                       Axis("relative_error", "relative error (thin: reported)", "log"), tuple(curves)),)
 
 
-def compare(flow, k, methods=None, report=None, *, known=None, points=None, budget=inf):
+def compare(flow: Any, k: Any, methods: Any = None, report: Any = None, *, known: Any = None, points: Any = None,
+            budget: Any = inf) -> Any:
     """Return the `Comparison` of the methods of this package at wavenumber k, or of those named in `methods`.
 
     Errors are measured against the `Reference` `known`, by default collocation's own value. `points` (odd) are those of
@@ -142,7 +148,8 @@ def compare(flow, k, methods=None, report=None, *, known=None, points=None, budg
     return found
 
 
-def comparisons(flow, k, methods=None, report=None, *, known=None, points=None, budget=inf):
+def comparisons(flow: Any, k: Any, methods: Any = None, report: Any = None, *, known: Any = None, points: Any = None,
+                budget: Any = inf) -> Iterator[Any]:
     """Yield the comparison of `compare` as it grows: before the first measurement, and after each."""
     begun = monotonic()
     chosen = [check_options("methods", name, tuple(MEASURED)) for name in (MEASURED if methods is None else methods)]
@@ -162,7 +169,8 @@ def comparisons(flow, k, methods=None, report=None, *, known=None, points=None, 
             if now - begun + _SLOWER * last > budget:
                 found = replace(found, skipped=(*found.skipped, (name, label)))
             else:
-                result = one_thread(method)(flow, mode, setting, points or SWEEP_POINTS)
+                measure: Any = one_thread(method)
+                result = measure(flow, mode, setting, points or SWEEP_POINTS)
                 found, last = _with(found, name, label, result), monotonic() - now
             if report:
                 report(count, total)
@@ -170,11 +178,11 @@ def comparisons(flow, k, methods=None, report=None, *, known=None, points=None, 
         found = replace(found, pending=found.pending[1:])
 
 
-def _label(setting):
+def _label(setting: float) -> str:
     return f"degree {setting}" if isinstance(setting, int) else f"residual {setting:g}"
 
 
-def _with(found, name, label, result):
+def _with(found: "Comparison", name: str, label: str, result: tuple[Any, ...]) -> "Comparison":
     """The comparison with the result of one more measurement, or with its failure."""
     known = found.reference
     if result is _ABSENT:
@@ -186,19 +194,19 @@ def _with(found, name, label, result):
     return replace(found, measurements=(*found.measurements, one))
 
 
-def target(flow, k):
+def target(flow: "Flow", k: float) -> "Mode":
     """The mode that is compared: the surface mode, or the most unstable one of a flow without."""
     if flow.has_surface_mode():
         return dispersion(flow, k).modes[0]
     return spectrum(flow, k, 1).modes[0]
 
 
-def reference(mode):
+def reference(mode: "Mode") -> "Reference":
     """Collocation's own value of a mode, at the degree that its tolerance asks for."""
     return Reference(mode.sigma, mode.error, f"collocation at degree {mode.degree}, error below {mode.error:.1e}")
 
 
-def timed(function):
+def timed(function: Callable[..., Any]) -> tuple[Any, ...]:
     """Return the value of function() and its shortest CPU time in seconds."""
     best, spent = inf, 0.0
     while spent < _SECONDS or best == inf:
@@ -212,7 +220,7 @@ def timed(function):
     return value, best
 
 
-def _collocation(flow, mode, degree, points):
+def _collocation(flow: "Flow", mode: "Mode", degree: int, points: int) -> tuple[complex, float, float, int] | None:
     """This package's own method at one degree: the mode followed through the sweep from where it starts."""
     try:
         found, seconds = timed(lambda: _followed(flow, mode, degree, points))
@@ -221,7 +229,7 @@ def _collocation(flow, mode, degree, points):
     return found.sigma, found.error, seconds / points, len(found.x)
 
 
-def _followed(flow, mode, degree, points):
+def _followed(flow: "Flow", mode: "Mode", degree: int, points: int) -> "Mode":
     """The mode at mode.k after a sweep at one degree, all included."""
     solver = Solver(flow, Accuracy(1.0, degree))
     rough = solver.rough(1.0)
@@ -236,12 +244,12 @@ def _followed(flow, mode, degree, points):
     return found[mode.k]
 
 
-def _guess(mode, k):
+def _guess(mode: Any, k: Any) -> Any:
     """Rate of a mode at another wavenumber, from its slope."""
     return mode.rate + (k - mode.k) * mode.rate_slope
 
 
-def wavenumbers(k, points=None):
+def wavenumbers(k: float, points: int | None = None) -> np.ndarray:
     """The sweep, with k in its middle."""
     points = points or SWEEP_POINTS
     values = np.geomspace(k / SPAN, k * SPAN, points)
@@ -249,7 +257,7 @@ def wavenumbers(k, points=None):
     return values
 
 
-def _dense(flow, mode, degree, points):
+def _dense(flow: "Flow", mode: "Mode", degree: int, points: int) -> tuple[complex, None, float, int]:
     """All modes at once: the dense eigenvalue problem of the same matrices, unrefined."""
     solver = Solver(flow)
     symbols = solver.symbols(mode.k)
@@ -258,12 +266,12 @@ def _dense(flow, mode, degree, points):
     return complex(solver.width(mode.k) * nearest), None, seconds, solver.pencil(degree).size
 
 
-def _bvp(flow, mode, residual, points):
+def _bvp(flow: Any, mode: Any, residual: Any, points: Any) -> Any:
     """Continuation by solve_bvp through the sweep, at one tolerance of solve_bvp."""
     return _continued(flow, mode, residual, None, points)
 
 
-def _bvp_thesis(flow, mode, residual, points):
+def _bvp_thesis(flow: Any, mode: Any, residual: Any, points: Any) -> Any:
     """The thesis's setting, from its own tolerance on; the bias of the problem stays."""
     from ..bvp.thesis import thesis_setting
 
@@ -274,7 +282,8 @@ def _bvp_thesis(flow, mode, residual, points):
     return _continued(flow, mode, residual, setting, points)
 
 
-def _continued(flow, mode, residual, setting, points):
+def _continued(flow: "Flow", mode: "Mode", residual: float, setting: Any,
+               points: int) -> tuple[complex, float, float, int] | None:
     from ..bvp.continuation import continue_in_k
 
     sweep = wavenumbers(mode.k, points)

@@ -25,6 +25,7 @@ from .thresholds import critical_zeros
 
 if TYPE_CHECKING:
     from ..flows import Flow
+    from ..modes.accuracy import Accuracy
 
 
 class ZeroGrowth(Record):
@@ -199,7 +200,7 @@ def critical_sweep(flows: "Iterable[Flow]", vary: str, *, span: tuple[float, flo
         yield _critical(landscape_of(flow, vary, span, search, accuracy), long_wave)
 
 
-def landscape_of(flow, vary, span, search, accuracy):
+def landscape_of(flow: "Flow", vary: str, span: Any, search: Any, accuracy: "Accuracy") -> Landscape:
     check_parameter_name(flow, vary)
     span = span_of(flow, vary) if span is None else check_range(span, "span")
     search = None if search is None else check_range(search, "search")
@@ -207,7 +208,7 @@ def landscape_of(flow, vary, span, search, accuracy):
 
 
 @one_thread
-def _critical(land, long_wave):
+def _critical(land: Landscape, long_wave: bool) -> "NeutralPoint":
     settings = {**settings_of(land), **({"long_wave": "yes"} if long_wave else {})}
     found = critical_zeros(land, long_wave)
     points = [point_of(land, zero, settings) for zero in found.boundaries]
@@ -219,17 +220,17 @@ def _critical(land, long_wave):
     return replace(nothing, settings=settings, others=tuple(points), remark=found.remark)
 
 
-def settings_of(land):
+def settings_of(land: Landscape) -> dict[str, Any]:
     """What a result depends on besides flow and parameter."""
     return {"range": f"{land.span[0]:g} .. {land.span[1]:g}", "search": f"{land.search[0]:g} .. {land.search[1]:g}",
             **land.planes[0].accuracy.settings}
 
 
-def point_of(land, zero, settings):
+def point_of(land: Any, zero: Any, settings: Any) -> Any:
     flow = land.planes[0].flow_at(zero.value)
     return NeutralPoint(flow, land.vary, zero.k, zero.value, zero.mode.phase_speed, zero.error, zero.k_error,
                         zero.status, settings, data_error=zero.data_error)
 
 
-def no_point(flow, vary, k, why):
+def no_point(flow: Any, vary: Any, k: Any, why: Any) -> Any:
     return NeutralPoint(flow, vary, k, None, None, None, None, unresolved(why))

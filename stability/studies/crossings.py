@@ -5,7 +5,9 @@ followed to the next column, or back where none arrived; growth and its derivati
 zero. In an ill-posed flow it is the surface mode that is asked about, at each value the one followed from long waves.
 """
 
+from collections.abc import Iterator
 from itertools import pairwise
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,12 +20,18 @@ from ..numerics.walker import Pace, Walker, towards
 from .ridges import Landscape, may_turn
 from .thresholds import zero_at
 
+if TYPE_CHECKING:
+    from .plane import Plane, Point
+    from .thresholds import Zero
+
 _PACE = Pace(0.25, 0.25, 1e-4)  # in the logarithm of the parameter
 _SAME = 1e-3  # relative distance of sigma within which two modes are one
 _ITERATIONS = 60
+_INNER = 0.01  # part of a bracket at either end that a secant does not step into
+_LAST_DIGIT = 1e-15  # relative step of Newton that is rounding
 
 
-def zeros_at(land: Landscape, k: float):
+def zeros_at(land: Landscape, k: float) -> "tuple[list[Zero], dict[Any, Any], set[Any]]":
     """Return the `Zero`s at wavenumber k by increasing value, the traces of why none is known, and whether any grows.
 
     The traces are {value: reason} of the columns that could not be computed.
@@ -45,7 +53,7 @@ def zeros_at(land: Landscape, k: float):
     return sorted(zeros, key=lambda zero: zero.value), trouble, grows
 
 
-def _modes(plane, k, value):
+def _modes(plane: "Plane", k: float, value: float) -> list[Any]:
     """Points at k of the modes that matter at a value."""
     solver = plane.solver(value)
     if crest_mode(plane.flow_at(value)) == "surface":
@@ -59,7 +67,7 @@ def _modes(plane, k, value):
     return [plane.point(k, value, mode) for mode in modes]
 
 
-def _changes(plane, left, right):
+def _changes(plane: Any, left: Any, right: Any) -> Iterator[Any]:
     """Pairs of neighbouring points of opposite growth between two columns (value, points)."""
     (low, here), (high, there) = left, right
     arrived = []
@@ -73,11 +81,11 @@ def _changes(plane, left, right):
             yield from _turns(plane, [start, *follow(plane, start, low)])
 
 
-def _one(a, b):
+def _one(a: "Point", b: "Point") -> bool:
     return abs(a.mode.sigma - b.mode.sigma) < _SAME * abs(a.mode.sigma)
 
 
-def follow(plane, start, value):
+def follow(plane: "Plane", start: "Point", value: float) -> Iterator[Any]:
     """Yield points of the mode from one value to another; ends early where it is lost."""
     walk = _AtOneWavenumber(plane, start)
     while walk.now.value != value and not walk.stuck:
@@ -90,18 +98,18 @@ class _AtOneWavenumber(Walker):
 
     failures = (ModeLost, ParameterError)
 
-    def __init__(self, plane, start):
+    def __init__(self, plane: "Plane", start: "Point") -> None:
         super().__init__(_PACE)
         self.plane, self.now = plane, start
 
-    def correct(self, to, guess):
+    def correct(self, to: float, guess: Any) -> "Point":
         return self.plane.move(self.now, self.now.k, to)
 
-    def accept(self, to, new):
+    def accept(self, to: float, new: "Point") -> None:
         self.now = new
 
 
-def _turns(plane, way):
+def _turns(plane: Any, way: Any) -> Iterator[Any]:
     for a, b in pairwise(way):
         if a.growth * b.growth <= 0:
             yield a, b
@@ -112,17 +120,17 @@ def _turns(plane, way):
                 yield middle, b
 
 
-def _refined(plane, a, b):
+def _refined(plane: "Plane", a: "Point", b: "Point") -> "Zero":
     """The `Zero` between two points of opposite growth: secants kept inside, at last with full accuracy."""
     a, b = plane.adopt(a), plane.adopt(b)
     for _ in range(_ITERATIONS):
-        share = float(np.clip(a.growth / (a.growth - b.growth), 0.01, 0.99)) if a.growth != b.growth else 0.5
+        share = float(np.clip(a.growth / (a.growth - b.growth), _INNER, 1 - _INNER)) if a.growth != b.growth else 0.5
         near = min(a, b, key=lambda point: abs(point.growth))
         newton = near.value - near.growth / near.by_value.real
         inside = min(a.value, b.value) < newton < max(a.value, b.value)
         new = plane.move(near, near.k, newton if inside else a.value * (b.value / a.value) ** share)
         a, b = (new, b) if new.growth * b.growth <= 0 else (a, new)
-        if abs(new.growth) < 0.5 * new.mode.error or abs(newton - near.value) < 1e-15 * abs(near.value):
+        if abs(new.growth) < 0.5 * new.mode.error or abs(newton - near.value) < _LAST_DIGIT * abs(near.value):
             break
     best = min(a, b, key=lambda point: abs(point.growth))
     return zero_at(best, (best.mode.error + abs(best.growth)) / abs(best.by_value.real), 0.0, plane)

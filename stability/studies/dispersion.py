@@ -1,6 +1,6 @@
 """Dispersion relations sigma(k): the surface mode followed from its long-wave limit, or the most unstable mode."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -246,17 +246,17 @@ def default_mode(flow: "Flow") -> str:
 # Each walk yields ({k: mode}, {k: why it is lost}, collisions and encounters) of a few wavenumbers at a time.
 
 
-def _surface(solver, wavenumbers):
+def _surface(solver: Solver, wavenumbers: np.ndarray) -> Iterator[Any]:
     """Follow the surface mode from its long-wave limit."""
     yield from _followed(solver, surface_branch, wavenumbers)
 
 
-def _leading(solver, wavenumbers):
+def _leading(solver: Solver, wavenumbers: np.ndarray) -> Iterator[Any]:
     """Follow the mode that leads at the flow's own wavenumber."""
     yield from _followed(solver, leading_branch, wavenumbers)
 
 
-def _followed(solver, start, wavenumbers):
+def _followed(solver: Solver, start: Callable[..., Any], wavenumbers: np.ndarray) -> Iterator[Any]:
     told = set()
     try:
         with branch_of(solver, start, wavenumbers) as branch:
@@ -269,7 +269,7 @@ def _followed(solver, start, wavenumbers):
         yield {}, dict.fromkeys(wavenumbers.tolist(), str(reason)), ()
 
 
-def leading_branch(solver, known=None):
+def leading_branch(solver: Solver, known: Any = None) -> Branch:
     """Return the branch of the mode that leads at `flow.wavenumber`, within its symmetry class on half the domain.
 
     Of two that lead together, the one that travels downstream faster. `known` are modes of a flow that is nearly the
@@ -282,7 +282,7 @@ def leading_branch(solver, known=None):
     return Branch(half, mode, rough_solver(half, known))
 
 
-def _most_unstable(solver, wavenumbers):
+def _most_unstable(solver: Solver, wavenumbers: Any) -> Iterator[Any]:
     for k in wavenumbers.tolist():
         try:
             (mode,) = leading_modes(solver, k, 1)

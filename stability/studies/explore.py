@@ -5,6 +5,7 @@ error bars, the fastest growing wavenumber and the long-wave limit. Everything i
 a notebook (ipympl) or a browser (WebAgg).
 """
 
+from collections.abc import Iterator
 from dataclasses import fields, replace
 from math import inf, isfinite, isinf, log10
 from time import perf_counter
@@ -21,8 +22,8 @@ from ..output.plots import draw
 from ..output.style import BLUE, GREY, RED, STYLE
 from ..output.symbols import symbol_of
 from .dispersion import DispersionRelation, dispersion
-from .kmax import k_max
-from .spectrum import spectrum
+from .kmax import Optimum, k_max
+from .spectrum import Spectrum, spectrum
 
 FRAME = 0.05  # seconds in which a move is to be answered
 _FEWEST = 8  # wavenumbers that are followed at least
@@ -57,12 +58,14 @@ def explore(flow: Any, k: Any = None, source: str | None = None) -> "Explorer":
 class Explorer:
     """The window: `flow` is what its sliders say, `relation` what is shown, `figure` where."""
 
-    def __init__(self, flow, k, source):
+    def __init__(self, flow: Any, k: Any, source: Any) -> None:
         from matplotlib import pyplot
 
         self.flow, self.k, self.source = flow, k, source
-        self.relation = self.spectrum = self.mode = None
-        self.best = None
+        self.relation: DispersionRelation | None = None
+        self.spectrum: Spectrum | None = None
+        self.best: Optimum | None = None
+        self.mode: Any = None
         self._count = len(k)
         names = [item.name for item in fields(flow) if numeric(item)]
         with pyplot.rc_context({**STYLE, "figure.constrained_layout.use": False}):
@@ -81,7 +84,7 @@ class Explorer:
 
     # -- the window ---------------------------------------------------------------------------------------------
 
-    def _axes(self, sliders):
+    def _axes(self, sliders: Any) -> None:
         below = 0.10 + 0.28 * sliders / (5.6 + 0.28 * sliders)
         grid = self.figure.add_gridspec(2, 2, left=0.08, right=0.98, top=0.94, bottom=below + 0.06, wspace=0.22,
                                         hspace=0.42)
@@ -96,9 +99,9 @@ class Explorer:
         self.modes.set(xlabel=PHASE_SPEED.label, ylabel=GROWTH_RATE.label, title="click at a wavenumber")
         self.fields.set(xlabel="$|u|$, $|w|$", ylabel="height $z$", title="click at a mode")
 
-    def _artists(self):
+    def _artists(self) -> None:
         """What moves: animated, so that a frame redraws nothing else."""
-        def line(axis, **options):
+        def line(axis: Any, **options: Any) -> Any:
             return axis.plot([], [], animated=True, **{"marker": "", "linestyle": "-"} | options)[0]
 
         self._lines = {"growth_rate": line(self.growth, color=BLUE), "phase_speed": line(self.speed, color=BLUE)}
@@ -108,7 +111,7 @@ class Explorer:
         self._here = line(self.growth, color=RED, linewidth=0.8)
         self._text = self.figure.text(0.01, 0.012, "", fontsize=8, color=GREY, animated=True)
 
-    def _slider(self, place, name):
+    def _slider(self, place: Any, name: Any) -> Any:
         from matplotlib.widgets import Slider
 
         low, high = self._span(name)
@@ -127,22 +130,22 @@ class Explorer:
         (item,) = (item for item in fields(self.flow) if item.name == name)
         end = inf if item.metadata["unbounded"] else high
 
-        def value_at(position):
+        def value_at(position: Any) -> Any:
             return end if position >= slider.valmax else min(10**position, high) if logarithmic else position
 
         slider.on_changed(lambda position: self.moved(name, value_at(position)))
         return slider
 
-    def _span(self, name):
+    def _span(self, name: Any) -> Any:
         """The range of a slider: what is searched of the parameter, and the value that it has."""
         low, high = span_of(self.flow, name)
         value = getattr(self.flow, name)
         return (min(low, value), max(high, value)) if isfinite(value) else (low, high)
 
-    def _buttons(self):
+    def _buttons(self) -> None:
         from matplotlib.widgets import Button
 
-        def button(place, text, action):
+        def button(place: Any, text: Any, action: Any) -> Any:
             made = Button(self.figure.add_axes((0.84, 0.09 + 0.055 * place, 0.14, 0.045)), text)
             made.label.set_fontsize(8)
             made.on_clicked(lambda event: action())
@@ -152,7 +155,7 @@ class Explorer:
 
     # -- what happens -------------------------------------------------------------------------------------------
 
-    def moved(self, name, value):
+    def moved(self, name: Any, value: Any) -> None:
         """A parameter has a new value: answer within a frame, and in full once nothing moves any more."""
         began = perf_counter()
         try:
@@ -172,7 +175,7 @@ class Explorer:
         self._timer.stop()
         self._timer.start()
 
-    def rest(self):
+    def rest(self) -> None:
         """Everything at the parameters that the sliders show."""
         self._timer.stop()
         self._follow(self.k)
@@ -184,7 +187,7 @@ class Explorer:
         self._rescale()
         self.figure.canvas.draw_idle()
 
-    def _follow(self, k):
+    def _follow(self, k: Any) -> None:
         """Follow the mode over wavenumbers; what is lost is left out, and said."""
         try:
             self.relation = dispersion(self.flow, k, strict=False, rivals=True)
@@ -198,7 +201,7 @@ class Explorer:
         for name, line in self._lines.items():
             line.set_data([mode.k for mode in modes], [getattr(mode, name) for mode in modes])
 
-    def _mark(self):
+    def _mark(self) -> None:
         """Error bars, the fastest growing wavenumber and the long-wave limit."""
         if self.relation is not None:
             modes = self.relation.modes
@@ -209,7 +212,7 @@ class Explorer:
         if crest_mode(self.flow) == "surface":
             self._limit.set_data(self.k, np.real(self.flow.long_wave(self.k)))
 
-    def _rescale(self):
+    def _rescale(self) -> None:
         """Limits that show the curves: of the growth rate from the decay that matters."""
         for name, axis in (("growth_rate", self.growth), ("phase_speed", self.speed)):
             values = np.asarray(self._lines[name].get_ydata(), dtype=float)
@@ -221,7 +224,7 @@ class Explorer:
             room = 0.08 * (high - low or abs(high) or 1.0)
             axis.set_ylim(low - room, high + room)
 
-    def _clicked(self, event):
+    def _clicked(self, event: Any) -> None:
         if event.inaxes in (self.growth, self.speed) and event.xdata and event.xdata > 0:
             self.show_spectrum(float(event.xdata))
         elif event.inaxes is self.modes and self.spectrum is not None and self.spectrum.modes:
@@ -230,7 +233,7 @@ class Explorer:
             if away.min() < _NEAR:
                 self.show_mode(self.spectrum.modes[int(away.argmin())])
 
-    def show_spectrum(self, k):
+    def show_spectrum(self, k: Any) -> None:
         """The modes at one wavenumber."""
         try:
             self.spectrum = spectrum(self.flow, k, _MODES, strict=False)
@@ -246,7 +249,7 @@ class Explorer:
         self.modes.set(xlabel=PHASE_SPEED.label, ylabel=GROWTH_RATE.label, title=f"modes at $k$ = {k:.4g}")
         self.figure.canvas.draw_idle()
 
-    def show_mode(self, mode):
+    def show_mode(self, mode: Any) -> None:
         """The velocities of a mode over the height."""
         self.mode = mode
         self.fields.clear()
@@ -259,13 +262,13 @@ class Explorer:
         self.figure.canvas.draw_idle()
 
     @property
-    def command(self):
+    def command(self) -> Any:
         """The command that prints what is shown."""
         given = [f"--{item.name.replace('_', '-')} {getattr(self.flow, item.name)}" for item in fields(self.flow)
                  if getattr(self.flow, item.name) != item.default]
         return " ".join(["stability dispersion", self.source, *given, f"--k {_spec_of(self.k)}"])
 
-    def copy(self):
+    def copy(self) -> Any:
         """Put the command on the clipboard of the desktop where there is one, and into the window and the terminal."""
         window: Any = getattr(self.figure.canvas.manager, "window", None)
         if hasattr(window, "clipboard_append"):  # Tk
@@ -275,7 +278,7 @@ class Explorer:
         self.figure.canvas.draw_idle()
         return self.command
 
-    def save(self):
+    def save(self) -> Any:
         """Write the dispersion relation, as `stability dispersion --plot` draws it, to a new file here; its name."""
         from pathlib import Path
 
@@ -290,15 +293,15 @@ class Explorer:
 
     # -- drawing ------------------------------------------------------------------------------------------------
 
-    def _say(self, text):
+    def _say(self, text: Any) -> None:
         self._text.set_text(text if len(text) < 160 else f"{text[:157]}...")
 
-    def _moving(self):
+    def _moving(self) -> Iterator[Any]:
         yield from (*self._lines.values(), self._bars, self._limit, self._peak, self._here, self._text)
         for slider in self.sliders.values():
             yield from (slider.poly, slider._handle, slider.valtext)
 
-    def _drawn(self, event):
+    def _drawn(self, event: Any) -> None:
         """All that rests has been drawn: keep it, and lay over it what moves."""
         canvas: Any = self.figure.canvas
         if not hasattr(canvas, "copy_from_bbox"):
@@ -306,11 +309,11 @@ class Explorer:
         self._background = canvas.copy_from_bbox(self.figure.bbox)
         self._lay()
 
-    def _lay(self):
+    def _lay(self) -> None:
         for artist in self._moving():
             self.figure.draw_artist(artist)
 
-    def _refresh(self):
+    def _refresh(self) -> None:
         """A frame: what rests comes from memory."""
         canvas: Any = self.figure.canvas
         if self._background is None:
@@ -322,7 +325,7 @@ class Explorer:
         canvas.flush_events()
 
 
-def _spec_of(k):
+def _spec_of(k: Any) -> Any:
     """Wavenumbers (points,) as the command line takes them: a range where they are evenly spaced, or else a list."""
     for steps, spacing in ((np.diff(np.log(k)), ""), (np.diff(k), ":lin")):
         if len(k) > 1 and np.allclose(steps, steps[0]):

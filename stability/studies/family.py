@@ -82,14 +82,14 @@ class Family(Record):
         return merged([member.panels() for member in self.members], labels)
 
 
-def _common(parts):
+def _common(parts: list[Any]) -> dict[str, Any]:
     """What all dicts say; where they differ, all of it."""
     found = {name: list(dict.fromkeys(part[name] for part in parts if name in part))
              for name in dict.fromkeys(name for part in parts for name in part)}
     return {name: values[0] if len(values) == 1 else ", ".join(map(str, values)) for name, values in found.items()}
 
 
-def _stacked(parts, counts):
+def _stacked(parts: list[np.ndarray], counts: list[int]) -> np.ndarray:
     """Arrays (rows, ...) one below the other; nan where a member has none, or shorter lists."""
     kinds = [part for part in parts if part is not None]
     width = max(part.shape[1] if part.ndim > 1 else 0 for part in kinds)
@@ -107,7 +107,7 @@ def _stacked(parts, counts):
     return stacked
 
 
-def _extended(name, values, missing):
+def _extended(name: str, values: np.ndarray, missing: Any) -> np.ndarray:
     """A column with the rows of the values that were not reached."""
     count = missing if isinstance(missing, int) else len(missing)
     if not count:

@@ -9,6 +9,7 @@ import os
 from contextlib import suppress
 from hashlib import blake2b
 from pathlib import Path
+from typing import Any
 
 try:
     import fcntl
@@ -30,7 +31,7 @@ class Journal:
     in use by another run, or cannot be written.
     """
 
-    def __init__(self, path, request, shapes=None):
+    def __init__(self, path: Any, request: dict[str, Any], shapes: list[tuple[Any, ...]] | None = None) -> None:
         self.path = Path(path)
         self.done = {}
         self.damaged = 0
@@ -50,19 +51,19 @@ class Journal:
             self._file.close()
             raise
 
-    def __enter__(self):
+    def __enter__(self) -> "Journal":
         return self
 
-    def __exit__(self, *failure):
+    def __exit__(self, *failure: Any) -> None:
         self._file.close()
 
-    def add(self, index, rows):
+    def add(self, index: int, rows: list[list[float]]) -> None:
         """Keep the rows of a piece: they are with the operating system when this returns."""
         content = json.dumps([index, rows]).encode()
         self._append(_line(self._request + content, content))
         self.done[index] = rows
 
-    def _append(self, line):
+    def _append(self, line: bytes) -> None:
         rest = memoryview(line)
         try:
             while rest:
@@ -74,10 +75,10 @@ class Journal:
         self._size += len(line)
 
     @property
-    def _header(self):
+    def _header(self) -> bytes:
         return _line(self._request, self._request)
 
-    def _read(self):
+    def _read(self) -> int:
         """Fill `done`; return the length up to the end of the last line that ends."""
         self._file.seek(0)
         found = self._file.read()
@@ -91,7 +92,7 @@ class Journal:
             self._take(line)
         return len(found) - len(torn)
 
-    def _take(self, line):
+    def _take(self, line: Any) -> None:
         """Add the piece of a line to `done`, or count the line as damaged."""
         content = _content(line)
         whole = line + b"\n" == _line(self._request + content, content)
@@ -101,7 +102,7 @@ class Journal:
             case _:
                 self.damaged += 1
 
-    def _fits(self, index, rows):
+    def _fits(self, index: Any, rows: Any) -> Any:
         if self._shapes is None:
             return True
         if not 0 <= index < len(self._shapes):
@@ -109,7 +110,7 @@ class Journal:
         count, width = self._shapes[index]
         return len(rows) == count and all(isinstance(row, list) and len(row) == width for row in rows)
 
-    def _refuse(self, header):
+    def _refuse(self, header: Any) -> None:
         """Say whose the file is, or why that is not known."""
         name, request, content = repr(str(self.path)), json.loads(self._request), _content(header)
         found = _entry(content)
@@ -122,7 +123,7 @@ class Journal:
             raise ParameterError(f"{name} keeps a map without checksums, of an earlier version: {_DELETE}")
         raise ParameterError(f"{name} is not the journal of a map, or its first line is damaged: {_DELETE}")
 
-    def _lock(self):
+    def _lock(self) -> None:
         if fcntl is None:
             return
         try:
@@ -132,21 +133,21 @@ class Journal:
         except OSError:  # a file system without locks
             return
 
-    def _unwritable(self, reason):
+    def _unwritable(self, reason: Any) -> Any:
         kept = "; what is done is kept, the same command resumes" if self.done else ""
         return ParameterError(f"cannot write {str(self.path)!r}: {os.strerror(reason.errno)}{kept}")
 
 
-def _line(checked, content):
+def _line(checked: bytes, content: bytes) -> bytes:
     return b'["%s", %s]\n' % (blake2b(checked, digest_size=_CHECKSUM).hexdigest().encode(), content)
 
 
-def _content(line):
+def _content(line: Any) -> Any:
     """What a line holds behind its checksum, whole or not."""
     return line[2 * _CHECKSUM + len('["", '):-1]
 
 
-def _entry(text):
+def _entry(text: Any) -> Any:
     """The value of a text, or None where it is no JSON."""
     try:
         return json.loads(text)

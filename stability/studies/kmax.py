@@ -40,6 +40,7 @@ if TYPE_CHECKING:
 
 CREST_MODES = ("surface", "leading")
 _OTHERS = "other local maxima"  # in figures
+_ONE = 1e-9, 1e-6  # relative distances of k, beyond the errors, and of sigma within which two maxima are one
 
 
 @dataclass(frozen=True, repr=False)
@@ -253,7 +254,7 @@ def k_max_sweep(flows: "Iterable[Flow]", search: tuple[float, float] | None = No
 
 
 @one_thread
-def _optimum(solver, search, mode):
+def _optimum(solver: Any, search: Any, mode: Any) -> Any:
     if mode == "surface" and not solver.flow.has_surface_mode():
         solver.flow.long_wave(1.0)  # says so
     low, high = search or search_of(solver.flow, mode)
@@ -276,7 +277,7 @@ def _optimum(solver, search, mode):
     return Optimum(solver.flow, tuple(maxima), status, settings, strips)
 
 
-def _maxima(solver, brackets):
+def _maxima(solver: Any, brackets: Any) -> Any:
     """The positive maxima in the brackets, and why the mode is lost in one of them, or None."""
     solvers, found, lost = {half.flow: half for half in solver.halves}, [], None
     for left, right in brackets:
@@ -288,7 +289,7 @@ def _maxima(solver, brackets):
     return [maximum for maximum in found if maximum.growth_rate > 0], lost
 
 
-def _outdone(solver, best):
+def _outdone(solver: Solver, best: Maximum) -> Any:
     """Why the largest maximum may not be the answer by the complete list of modes at its wavenumber, or None."""
     try:
         known = listed(solver, best.k, 1)
@@ -300,22 +301,22 @@ def _outdone(solver, best):
     return None if known.sure else known.status[0]
 
 
-def _properly(solver, mode):
+def _properly(solver: Solver, mode: Any) -> Any:
     """A mode of a rough look with full accuracy."""
     (half,) = (half for half in solver.halves if half.flow == mode.flow)
     return half.refined(mode)
 
 
-def _distinct(maxima):
+def _distinct(maxima: list[Maximum]) -> list[Maximum]:
     kept = []
     for one in maxima:
-        if not any(abs(one.k - other.k) <= one.error + other.error + 1e-9 * one.k
-                   and abs(one.mode.sigma - other.mode.sigma) <= 1e-6 * abs(one.mode.sigma) for other in kept):
+        if not any(abs(one.k - other.k) <= one.error + other.error + _ONE[0] * one.k
+                   and abs(one.mode.sigma - other.mode.sigma) <= _ONE[1] * abs(one.mode.sigma) for other in kept):
             kept.append(one)
     return kept
 
 
-def _status(solver, looks, found, maxima, mode, low, high):
+def _status(solver: Any, looks: Any, found: Any, maxima: Any, mode: Any, low: Any, high: Any) -> Any:
     """Whether the largest maximum is known to be the answer, or why not."""
     trouble = [one.trouble for one in looks if one.trouble]
     if trouble:
@@ -334,6 +335,6 @@ def _status(solver, looks, found, maxima, mode, low, high):
     return maxima[0].status if maxima else _stable(mode, high)
 
 
-def _stable(mode, high):
+def _stable(mode: str, high: float) -> Status:
     which = "the surface mode does not grow" if mode == "surface" else "no waves grow"
     return Status(Kind.STABLE, f"{which} for k up to {high:g}")

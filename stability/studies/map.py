@@ -202,7 +202,7 @@ def parameter_map(flow: "Flow", over: "Mapping[str, ArrayLike]", quantity: str |
     return carry_out(request, executor=executor, workers=workers, journal=journal, report=report)
 
 
-def carry_out(request, *, executor=None, workers=1, journal=None, report=None):
+def carry_out(request: Any, *, executor: Any = None, workers: Any = 1, journal: Any = None, report: Any = None) -> Any:
     """Return the `Map` of a request; see `parameter_map`."""
     workers = _check_means(executor, workers, journal)
     pieces, report = request.pieces(), report or (lambda done, total: None)
@@ -223,7 +223,7 @@ def carry_out(request, *, executor=None, workers=1, journal=None, report=None):
     return Map(request, table, kept.damaged if kept else 0)
 
 
-def _check_means(executor, workers, journal):
+def _check_means(executor: Any, workers: int, journal: Any) -> int:
     """Return the number of workers, or raise a ParameterError where a map cannot be computed with this."""
     if executor is not None and not callable(getattr(executor, "submit", None)):
         raise ParameterError(f"executor must be a concurrent.futures.Executor (got {shown(executor)})")

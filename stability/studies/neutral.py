@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ..flows import Flow
+    from .ridges import Landscape
 
 
 @dataclass(frozen=True, repr=False)
@@ -106,7 +107,8 @@ def joined_curve(parts: list[NeutralCurve]) -> NeutralCurve:
                    trace=np.concatenate([part.trace for part in parts]))
 
 
-def _at_wavenumber(land, k, settings, drawn, low, high):
+def _at_wavenumber(land: "Landscape", k: float, settings: dict[str, Any], drawn: np.ndarray, low: float,
+                   high: float) -> tuple[Any, ...]:
     """The neutral points at one wavenumber, and the curves through those that lie on none that is drawn yet."""
     zeros, trouble, grows = zeros_at(land, k)
     points = [point_of(land, zero, settings) for zero in zeros]

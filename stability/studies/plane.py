@@ -7,7 +7,7 @@ be biorthogonal partners, as in `modes.tracking`.
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf, isinf
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +15,10 @@ from ..errors import ModeLost, ParameterError
 from ..modes.solver import Solver
 from ..numerics.walker import Pace, Walker
 from .sensitivity import Derivative
+
+if TYPE_CHECKING:
+    from ..flows.base import Flow
+    from ..modes.accuracy import Accuracy
 
 _OVERLAP = 0.5  # largest deviation of the overlap of one step from 1
 _HALVINGS = 12
@@ -31,26 +35,26 @@ class Point:
     mode: Any
 
     @property
-    def growth(self):
+    def growth(self) -> float:
         return self.mode.growth_rate
 
     @cached_property
-    def by_value(self):
+    def by_value(self) -> complex:
         """d sigma / d value."""
         return complex(self.plane.derivative(self.value)(self.mode))
 
     @property
-    def trend(self):
+    def trend(self) -> float:
         """Derivative of the growth rate in the logarithm of the value."""
         return self.value * self.by_value.real
 
     @property
-    def by_k(self):
+    def by_k(self) -> float:
         """Slope of the growth rate in log k."""
         return self.k * self.mode.slope.real
 
     @property
-    def gradient(self):
+    def gradient(self) -> np.ndarray:
         """Of the growth rate in (log k, value)."""
         return np.array([self.by_k, self.by_value.real])
 
@@ -61,7 +65,7 @@ class Plane:
     `half` tells which of `flow.halves()` is meant; error bars are computed with `bars`.
     """
 
-    def __init__(self, flow, vary, accuracy, half=0, bars=True):
+    def __init__(self, flow: "Flow", vary: str, accuracy: "Accuracy", half: int = 0, bars: bool = True) -> None:
         if isinf(getattr(flow, vary)):
             raise ParameterError(f"{flow.name}: {vary} = inf cannot be varied; start from a finite {vary}")
         self.flow, self.vary, self.half = flow, vary, half
@@ -69,15 +73,15 @@ class Plane:
         self.power = 2 if flow.has_surface_mode() else 0  # growth of long waves is of the order of k^power
         self._solvers, self._derivatives = {}, {}
 
-    def rough(self, tolerance):
+    def rough(self, tolerance: float) -> "Plane":
         """The same plane, no more accurate than this."""
         return Plane(self.flow, self.vary, self.accuracy.rougher(tolerance), self.half, bars=False)
 
-    def flow_at(self, value):
+    def flow_at(self, value: float) -> "Flow":
         """The whole flow at a value; raises ParameterError where there is none."""
         return replace(self.flow, **{self.vary: value})
 
-    def solver(self, value):
+    def solver(self, value: float) -> Solver:
         """The solver at this value; the last few are kept."""
         if value not in self._solvers:
             flow = self.flow_at(value).halves()[self.half]
@@ -88,7 +92,7 @@ class Plane:
             self._solvers[value] = Solver(flow, self.accuracy, assembly, self._bars)
         return self._solvers[value]
 
-    def derivative(self, value):
+    def derivative(self, value: float) -> Derivative:
         """The `Derivative` with respect to the parameter at this value; the last few are kept."""
         if value not in self._derivatives:
             if len(self._derivatives) == _KEPT:
@@ -96,16 +100,16 @@ class Plane:
             self._derivatives[value] = Derivative(self.solver(value), self.vary)
         return self._derivatives[value]
 
-    def point(self, k, value, mode):
+    def point(self, k: Any, value: Any, mode: Any) -> Any:
         return Point(self, k, value, mode)
 
-    def adopt(self, point):
+    def adopt(self, point: "Point") -> "Point":
         """The point of another plane of this flow, with the accuracy of this one."""
         mode = point.mode
         solver = self.solver(point.value)
         return self.point(point.k, point.value, solver.solve(point.k, mode.rate, (mode.degree, mode.x, mode.y)))
 
-    def move(self, start, k, value, halvings=_HALVINGS):
+    def move(self, start: Any, k: Any, value: Any, halvings: Any = _HALVINGS) -> Any:
         """The mode of `start` at another point; in several steps, halved so often, where one would not be safe."""
         walk = _Move(self, start, k, value, 0.5**halvings)
         for _ in range(4 * halvings):
@@ -123,12 +127,12 @@ class _Move(Walker):
 
     checks = ("overlaps",)
 
-    def __init__(self, plane, start, k, value, smallest):
+    def __init__(self, plane: "Plane", start: "Point", k: float, value: float, smallest: float) -> None:
         super().__init__(Pace(1.0, inf, smallest, 2.0))
         self.plane, self.start, self.end = plane, start, (k, value)
         self.now, self.reached = start, 0.0
 
-    def foresee(self, to):
+    def foresee(self, to: float) -> tuple[float, float, complex]:
         """k, value and sigma at a part of the way."""
         start, (k, value), now = self.start, self.end, self.now
         if to < 1:
@@ -138,16 +142,16 @@ class _Move(Walker):
             change += now.by_value * (value - now.value)
         return k, value, now.mode.sigma + change
 
-    def correct(self, to, guess):
+    def correct(self, to: float, guess: tuple[float, float, complex]) -> "Point":
         k, value, sigma = guess
         solver, old = self.plane.solver(value), self.now.mode
         degree = old.degree if old.degree in solver.degrees else solver.degrees[-1]
         mode = solver.solve(k, sigma / solver.width(k), (old.degree, old.x, old.y), degree)
         return self.plane.point(k, value, mode)
 
-    def overlaps(self, new, guess):
+    def overlaps(self, new: "Point", guess: tuple[float, float, complex]) -> bool:
         """Whether old and new eigenvectors are biorthogonal partners."""
         return abs(self.plane.solver(new.value).overlap(self.now.mode, new.mode) - 1) < _OVERLAP
 
-    def accept(self, to, new):
+    def accept(self, to: float, new: "Point") -> None:
         self.now, self.reached = new, to

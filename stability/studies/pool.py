@@ -4,9 +4,11 @@ import os
 import signal
 import sys
 import threading
+from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
 from contextlib import contextmanager, suppress
 from multiprocessing import get_context
+from typing import Any
 
 from threadpoolctl import threadpool_limits
 
@@ -16,13 +18,13 @@ MOST_WORKERS = 1000
 GUARD = 'a script needs `if __name__ == "__main__":` around what it does, and cannot come from standard input'
 
 
-def cores():
+def cores() -> int:
     """How many cores this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @contextmanager
-def processes(workers):
+def processes(workers: int) -> Iterator[Any]:
     """Yield a pool of `workers` fresh processes; whatever they still do at the end of the block is dropped.
 
     Each holds one end of a pipe whose other end is ours alone. When that closes, because the block ends or because
@@ -47,7 +49,7 @@ def processes(workers):
 
 
 @contextmanager
-def _deaf():
+def _deaf() -> Iterator[Any]:
     """Block Ctrl-C here and, inherited, for good in the processes started meanwhile: they must not print tracebacks."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
@@ -59,13 +61,13 @@ def _deaf():
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _begin(lifeline):
+def _begin(lifeline: Any) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with, args=(lifeline,), daemon=True).start()
     threadpool_limits(1, user_api="blas")
 
 
-def _end_with(lifeline):
+def _end_with(lifeline: Any) -> None:
     """Wait until the other end of the pipe is gone; nothing is ever sent."""
     try:
         lifeline.recv_bytes()
@@ -73,5 +75,5 @@ def _end_with(lifeline):
         os._exit(0)
 
 
-def _nothing():
+def _nothing() -> None:
     pass

@@ -44,7 +44,7 @@ class Request:
     vary: str | None = None
     accuracy: Accuracy = Accuracy()
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_flow(self.flow)
         self._set(quantity=check_options("quantity", self.quantity, QUANTITIES))
         if not isinstance(self.over, Mapping):
@@ -58,16 +58,16 @@ class Request:
         if not 1 <= self.size <= _MOST_POINTS:
             raise ParameterError(f"over: a map has 1 to {_MOST_POINTS} points (got {self.size}): coarsen or split it")
 
-    def _set(self, **values):
+    def _set(self, **values: Any) -> None:
         for name, value in values.items():
             object.__setattr__(self, name, value)
 
-    def _values(self, name, values):
+    def _values(self, name: str, values: list[float]) -> tuple[Any, ...]:
         check_parameter_name(self.flow, name)
         (item,) = (item for item in fields(self.flow) if item.name == name)
         return tuple(check_parameter(self.flow.name, item, value) for value in flat(values, f"over: {name}"))
 
-    def _check_quantity(self):
+    def _check_quantity(self) -> None:
         for name, owner, meaning in (("k", "growth_rate", "wavenumbers"),
                                      ("vary", "neutral", "a parameter to solve for")):
             given = getattr(self, name) is not None
@@ -80,29 +80,29 @@ class Request:
             raise ParameterError(f"vary: {self.vary} is the parameter to solve for; sweep another one")
 
     @property
-    def axes(self):
+    def axes(self) -> dict[str, np.ndarray]:
         """{name: values (count,)}, outermost first; k is the innermost."""
         axes = self.over if self.k is None else {**self.over, "k": self.k}
         return {name: np.array(values) for name, values in axes.items()}
 
     @property
-    def shape(self):
+    def shape(self) -> tuple[int, ...]:
         return tuple(len(values) for values in self.axes.values())
 
     @property
-    def size(self):
+    def size(self) -> int:
         """How many points there are."""
         return prod(self.shape)
 
     @property
-    def results(self):
+    def results(self) -> tuple[Any, ...]:
         """Names of the results at each point; the last is the status."""
         names = list(_COLUMNS[self.quantity])
         place = names.index("error") + 1
         names[place:place] = measured(self.flow, *(("growth_data_error",) if self.quantity == "k_max" else ()))
         return (() if self.vary is None else (self.vary,)) + tuple(names)
 
-    def pieces(self):
+    def pieces(self) -> tuple[Any, ...]:
         """The pieces of the grid, in its order."""
         *outer, (name, inner) = self.over.items()
         lines = product(*(values for _, values in outer))
@@ -113,14 +113,14 @@ class Request:
                                self.k, self.vary, self.accuracy, len(self.results))
                      for index, (line, stretch) in enumerate(product(lines, stretches)))
 
-    def _at(self, names, values):
+    def _at(self, names: Any, values: Any) -> Any:
         """The flow at a point, or the reason (a string) why there is none."""
         try:
             return replace(self.flow, **dict(zip(names, values, strict=True)))
         except ParameterError as reason:
             return str(reason)
 
-    def description(self):
+    def description(self) -> dict[str, Any]:
         """All that the results depend on, as plain values."""
         from .. import __version__
 
@@ -144,10 +144,10 @@ class GridPiece:
     width: int  # results of a point
 
     @property
-    def points(self):
+    def points(self) -> int:
         return len(self.flows) * len(self.k or (None,))
 
 
-def usual_quantity(k, vary):
+def usual_quantity(k: Any, vary: Any) -> str:
     """The quantity that is meant where none is named."""
     return "neutral" if vary is not None else "k_max" if k is None else "growth_rate"

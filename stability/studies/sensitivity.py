@@ -4,10 +4,10 @@ d rate / d p = y^H (dA/dp - rate dB/dp) x. The coefficients of the equations are
 step 1e-5), before anything cancels, so the result is good to 7 digits or more: enough for Newton.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
 from math import isinf, prod
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -23,6 +23,9 @@ from ..output.record import Record
 from ..output.symbols import symbol_of, value_text
 from ..output.text import Row
 from ..status import Kind, Status, is_resolved, unresolved
+
+if TYPE_CHECKING:
+    from ..flows.base import Flow
 
 _STEP = 1e-5
 _STENCILS = {-1: -0.5, 1: 0.5}, {0: -1.5, 1: 2.0, 2: -0.5}, {0: 1.5, -1: -2.0, -2: 0.5}  # offsets: weights
@@ -170,13 +173,13 @@ class Derivative:
         return solver.width(mode.k) * slope
 
 
-def _symbols(flow, mode):
+def _symbols(flow: "Flow", mode: Mode) -> dict[str, Any]:
     """Values of k, rate and the flow's functions of k."""
     functions = flow.evaluate(np.array([mode.k]))
     return {"k": mode.k, "rate": mode.rate, **{name: parts[0][0] for name, parts in functions.items()}}
 
 
-def _neighbours(flow, name, step):
+def _neighbours(flow: "Flow", name: str, step: float) -> "tuple[np.ndarray, list[Flow]]":
     """Weights (points,) of a difference formula in the parameter, and the flows at its points."""
     value = getattr(flow, name)
     step = step * (abs(value) or 1.0)
@@ -189,7 +192,7 @@ def _neighbours(flow, name, step):
     raise ParameterError(f"{flow.name}: {name} = {value:g} lies too close to the end of its range to be varied")
 
 
-def _changes(weights, terms, versions, tables):
+def _changes(weights: Any, terms: Any, versions: Any, tables: Any) -> Iterator[Any]:
     """Yield (unknown, factor, series) of the derivative of an equation: of its coefficients, then of its functions.
 
     `tables` are the values of the symbols here and in each version. The weights add up to 0: only differences
@@ -210,7 +213,7 @@ def _changes(weights, terms, versions, tables):
             yield unknown, change, values
 
 
-def _in_equation(pencil, mode, rows, terms):
+def _in_equation(pencil: Any, mode: Any, rows: Any, terms: Any) -> Any:
     """y^H times the terms of one equation."""
     total = 0.0
     for unknown, factor, series in terms:
@@ -220,7 +223,7 @@ def _in_equation(pencil, mode, rows, terms):
     return total
 
 
-def _in_condition(pencil, mode, row, terms):
+def _in_condition(pencil: Any, mode: Any, row: Any, terms: Any) -> Any:
     total = 0.0
     for unknown, factor, series in terms:
         name, _, end = unknown.partition("@")
@@ -230,5 +233,5 @@ def _in_condition(pencil, mode, row, terms):
     return total
 
 
-def _padded(series, length):
+def _padded(series: np.ndarray, length: int) -> np.ndarray:
     return np.concatenate((series, np.zeros(length - len(series))))

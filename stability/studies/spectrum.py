@@ -105,14 +105,14 @@ class Spectra(Record):
         return [*_doubts(self.spectra), *self.remarks]
 
 
-def _panels(spectra):
+def _panels(spectra: Any) -> Any:
     """Growth rates against phase speeds, a curve for each wavenumber."""
     curves = [Curve(one.phase_speed, one.growth_rate, f"$k$ = {one.k:g}", POINTS, one.error / one.k, one.error,
                     status=one.status) for one in spectra]
     return (Panel(PHASE_SPEED, GROWTH_RATE, tuple(curves), zero="y"),)
 
 
-def _doubts(spectra):
+def _doubts(spectra: Any) -> list[Any]:
     return [f"{one.flow}, k = {one.k:g}: {one.doubt}" for one in spectra if one.doubt]
 
 
@@ -166,7 +166,7 @@ def spectra(flow: "Flow", wavenumbers: Sequence[float], modes: int, accuracy: Ac
 
 
 @one_thread
-def _spectrum(solver, k, count):
+def _spectrum(solver: Solver, k: float, count: int) -> "Spectrum":
     found = listed(solver, k, count)
     modes = found.modes[:count]
     return Spectrum(solver.flow, k, modes, solver.accuracy.settings, found.status[:count],

@@ -5,9 +5,11 @@ A nose, growth = d growth / dk = 0 at a finite k, is refined by Newton in (log k
 bracket: with sigma = k rate, a is the real part of d rate / dk at k = 0, where the scaled equations are regular.
 """
 
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import exp, log
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +17,10 @@ from ..errors import ModeLost, ParameterError
 from ..modes.response import error_of_zero
 from ..status import RESOLVED, Status, is_resolved, unresolved
 from .ridges import BUDGET, Landscape, narrowed
+
+if TYPE_CHECKING:
+    from .plane import Plane, Point
+    from .ridges import Crest, LongWaves
 
 _ITERATIONS = 20
 _SETTLED = 1e-4  # step of the rough Newton iteration below which its last Jacobian serves at full accuracy
@@ -26,6 +32,10 @@ _SCATTER = 4.0  # error of a slope in units of its change when the vectors are r
 _VALUE_TOLERANCE = 1e-9  # relative error of a value that is accepted as resolved whatever the tolerance of sigma
 _BOTH = "all modes, where the flow is ill posed the surface mode"
 _SAME = 1e-6  # relative distance of two values, and of their k, that are one
+_SAME_K = 1e-3  # that of their wavenumbers, which a flat crest leaves open
+_ITSELF = 0.05  # distance in log k within which a crest is the one that is neutral
+_POLISHED = 1e-9  # step in log k at which a nose is settled at full accuracy: its error in growth is the square
+_THRESHOLD = 1e-7  # relative error of a long-wave threshold that is accepted: its slopes have no better bars
 
 
 @dataclass(frozen=True)
@@ -73,7 +83,7 @@ def critical_zeros(land: Landscape, long_wave: bool) -> Found:
     return Found(boundaries, _ordered(land, inner), None if boundaries else _why_none(land), remark)
 
 
-def _noses(land):
+def _noses(land: Landscape) -> Iterator[Any]:
     for a, b in land.crossings():
         crest = narrowed(a.point.plane, a, b)
         plane = land.planes[crest.point.plane.half]
@@ -84,7 +94,7 @@ def _noses(land):
                        unresolved(reason), (b.growth - a.growth) * (b.value - a.value))
 
 
-def _beside_thresholds(land, thresholds):
+def _beside_thresholds(land: Any, thresholds: Any) -> Iterator[Any]:
     """Noses of long waves that grow already at the threshold of infinitely long ones: no ridge leads so close."""
     for threshold in thresholds:
         for crest in land.column(threshold.value).crests.get(0, []):
@@ -93,7 +103,7 @@ def _beside_thresholds(land, thresholds):
                     yield nose(land.planes[0], crest)
 
 
-def nose(plane, crest):
+def nose(plane: "Plane", crest: "Crest") -> "Zero":
     """The `Zero` near a crest: Newton on growth = d growth / d log k = 0, at last with full accuracy."""
     point, rough = crest.point, crest.point.plane
     for _ in range(_ITERATIONS):
@@ -116,7 +126,7 @@ def nose(plane, crest):
         again = plane.adopt(point)
         scatter = _SCATTER * abs(again.mode.slope - point.mode.slope)
         point = again
-        if abs(point.growth) < point.mode.error and abs(step[0]) < 1e-9:
+        if abs(point.growth) < point.mode.error and abs(step[0]) < _POLISHED:
             break
     bend = jacobian[1, 0] * point.k**plane.power
     error = (point.mode.error + abs(point.growth)) / abs(point.by_value.real)
@@ -124,7 +134,7 @@ def nose(plane, crest):
     return zero_at(point, error, k_error, plane)
 
 
-def _equations(point):
+def _equations(point: "Point") -> tuple[np.ndarray, ...]:
     """growth / k^power and its derivative in log k, which vanish at the nose; and the derivatives of the first.
 
     With the power of the long-wave growth they do not vanish everywhere at k = 0.
@@ -135,14 +145,14 @@ def _equations(point):
     return np.array([scale * point.growth, gradient[0]]), gradient
 
 
-def _jacobian(plane, point):
+def _jacobian(plane: "Plane", point: "Point") -> np.ndarray:
     """Of the two equations in (log k, value): the second row by a difference along k."""
     beside = plane.move(point, point.k * exp(_STRIDE), point.value)
     first, second = (_equations(at)[1] for at in (point, beside))
     return np.array([first, (second - first) / _STRIDE])
 
 
-def zero_at(point, error, k_error, plane):
+def zero_at(point: "Point", error: float, k_error: float, plane: "Plane") -> "Zero":
     """The `Zero` at a point, resolved where the error of its value is small."""
     status = point.mode.status
     if is_resolved(status) and not error <= max(plane.accuracy.tolerance, _VALUE_TOLERANCE) * abs(point.value):
@@ -152,21 +162,21 @@ def zero_at(point, error, k_error, plane):
                 error_of_zero(plane.solver(point.value), point.mode, slope))
 
 
-def _threshold(one, other):
+def _threshold(one: "LongWaves", other: "LongWaves") -> "Zero":
     """The `Zero` between two neighbouring values of opposite sign of a."""
     slope = (other.a - one.a) / (other.value - one.value)
     best = min(one, other, key=lambda known: abs(known.a))
     error = (abs(best.a) + best.spread) / abs(slope)
-    status = RESOLVED if error <= 1e-7 * abs(best.value) else unresolved(f"error {error:.1e} exceeds tolerance")
+    status = RESOLVED if error <= _THRESHOLD * abs(best.value) else unresolved(f"error {error:.1e} exceeds tolerance")
     return Zero(0.0, best.value, best.mode, float(error), 0.0, status, slope)
 
 
-def _near(zero, other):
+def _near(zero: "Zero", other: "Zero") -> bool:
     return abs(zero.value - other.value) <= _SAME * abs(zero.value) + zero.error + other.error \
-        and abs(zero.k - other.k) <= 1e-3 * max(zero.k, other.k)
+        and abs(zero.k - other.k) <= _SAME_K * max(zero.k, other.k)
 
 
-def _inside(land, zero, zeros):
+def _inside(land: Landscape, zero: "Zero", zeros: "list[Zero]") -> bool:
     """Whether something grows on both sides of a zero: what sets in and what ends, counted from a stable column."""
     stable = next((column.value for column in land.columns if not column.grows and not column.trouble), None)
     if stable is None:
@@ -177,7 +187,7 @@ def _inside(land, zero, zeros):
     return growing > 0 and growing + side * int(np.sign(zero.rise)) > 0
 
 
-def _others_grow(land, zero):
+def _others_grow(land: Any, zero: Any) -> Any:
     """Whether waves grow at a value besides those that are neutral there."""
     waves = land.long_wave(zero.value)
     if zero.k and waves and waves.a > waves.spread:
@@ -185,20 +195,20 @@ def _others_grow(land, zero):
     column = land.column(zero.value)
     for crests in column.crests.values():
         for crest in crests:
-            itself = zero.k and abs(log(crest.point.k / zero.k)) < 0.05
+            itself = zero.k and abs(log(crest.point.k / zero.k)) < _ITSELF
             if not itself and land.grows(crest.point, abs(crest.point.by_value.real) * zero.error):
                 return True
     return False
 
 
-def _ordered(land, zeros):
+def _ordered(land: Landscape, zeros: list[Any]) -> tuple[Any, ...]:
     """The first met from the stable side in front: from below unless the upper end of the span alone is stable."""
     stable = [not column.grows and not column.trouble for column in land.columns]
     down = bool(stable) and stable[-1] and not stable[0]
     return tuple(sorted(zeros, key=lambda zero: zero.value, reverse=down))
 
 
-def _doubted(land, zeros):
+def _doubted(land: Landscape, zeros: "tuple[Zero]") -> "tuple[Zero]":
     """The zeros, the first one doubtful where a column on its stable side could not be judged."""
     if not zeros:
         return zeros
@@ -214,7 +224,7 @@ def _doubted(land, zeros):
     return first, *others
 
 
-def _why_none(land):
+def _why_none(land: Any) -> Any:
     doubtful = [column for column in land.columns if column.trouble]
     growing = [column.grows for column in land.columns]
     if doubtful:
@@ -232,7 +242,7 @@ def _why_none(land):
            f"{land.search[1]:g}, {modes}; try another range"
 
 
-def _range(land):
+def _range(land: Any) -> Any:
     return f"from {land.columns[0].value:g} to {land.columns[-1].value:g}" if land.columns else \
         f"from {land.span[0]:g} to {land.span[1]:g}"
 

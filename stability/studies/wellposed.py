@@ -35,13 +35,13 @@ class Growth:
     surface: float | None
 
     @property
-    def settled(self):
+    def settled(self) -> bool:
         """Whether the last two degrees agree."""
         return abs(self.rates[-1] - self.rates[-2]) <= _SETTLED * abs(self.rates[-1])
 
 
 @one_thread
-def growth_with_degree(flow, k, degrees=GROWTH_DEGREES):
+def growth_with_degree(flow: Any, k: Any, degrees: Any = GROWTH_DEGREES) -> Any:
     """Return the `Growth` at each wavenumber: does the spectrum converge, does an internal mode outgrow the surface?"""
     solver = Solver(flow)
     wavenumbers = np.unique(np.asarray(k, dtype=float))
@@ -85,7 +85,7 @@ class IllPosedness(Record):
         return [f"{self.flow}: {strip}" for strip in self.layers.strips]
 
 
-def _layers_panel(found):
+def _layers_panel(found: WellPosedness) -> Panel:
     """C through the layers, ill-posed strips tinted."""
     layer = np.array(found.layer)
     curves = [Curve(found.C[layer == name], found.height[layer == name], name) for name in dict.fromkeys(found.layer)]
@@ -94,7 +94,7 @@ def _layers_panel(found):
                  zero="x", bands=tuple(Band(strip.low, strip.high, "y") for strip in found.strips))
 
 
-def _growth_panel(growth):
+def _growth_panel(growth: "tuple[Growth, ...]") -> Panel:
     """Largest growth rate against k, fainter the lower the degree, and that of the surface mode."""
     k, rates = np.array([one.k for one in growth]), np.array([one.rates for one in growth])
     count = len(growth[0].degrees)
@@ -116,19 +116,19 @@ def ill_posedness(flow: Any, points: int = LOOKED_AT, growth: tuple[Growth, ...]
     return IllPosedness(flow, layers, growth, tuple(rows))
 
 
-def _layer_rows(found):
+def _layer_rows(found: WellPosedness) -> list[dict[str, Any]]:
     columns = zip(found.layer, found.height.tolist(), found.C.tolist(), found.short_waves.tolist(), found.ill.tolist(),
                   strict=True)
     return [{"layer": layer, "height": height, "C": C, "short_waves": growth, "ill_posed": "yes" if ill else "no",
              "status": RESOLVED} for layer, height, C, growth, ill in columns]
 
 
-def _growth_rows(growth, wavenumbers):
+def _growth_rows(growth: "tuple[Growth, ...]", wavenumbers: list[float]) -> list[dict[str, float]]:
     rows = [_growth_row(one) for one in growth]
     return rows + [dict.fromkeys(rows[0]) | {"k": k, "status": INTERRUPTED} for k in wavenumbers[len(rows):]]
 
 
-def _growth_row(growth):
+def _growth_row(growth: Any) -> Any:
     """Largest growth rates by degree; no number where the last two degrees disagree is called a result."""
     columns = {f"degree_{degree}": float(rate) for degree, rate in zip(growth.degrees, growth.rates, strict=True)}
     status = RESOLVED if growth.settled else unresolved(f"unresolved: still moves at degree {growth.degrees[-1]}")

@@ -1,5 +1,8 @@
 """stability compare: all methods on one eigenvalue, their errors and times."""
 
+import argparse
+from typing import Any
+
 from ..common import add_verb, flow_of, report
 from ..progress import Bar
 from ..specs import parse_one
@@ -8,20 +11,20 @@ _POINTS = 21  # of the sweeps: enough for a time per eigenvalue
 _BUDGET = 10.0  # seconds after which nothing long is begun
 
 
-def add(verbs):
+def add(verbs: Any) -> None:
     add_verb(verbs, "compare", _run, "stability compare vortex --k 2 --plot compare.png",
              _k_option)
 
 
-def _k_option(verb):
+def _k_option(verb: Any) -> None:
     verb.add_argument("--k", required=True, metavar="K", help="wavenumber")
 
 
-def _run(arguments):
+def _run(arguments: argparse.Namespace) -> int:
     flow = flow_of(arguments)
     k = parse_one(arguments.k, "--k", "wavenumber")
 
-    def compute():
+    def compute() -> Any:
         from ...studies.compare import comparisons
 
         bar, found = Bar(arguments.quiet), None

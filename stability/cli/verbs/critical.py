@@ -1,29 +1,35 @@
 """stability critical: the value of a parameter at which a flow becomes unstable."""
 
+import argparse
+from typing import TYPE_CHECKING, Any
+
 from ..common import accuracy_options, add_verb, flow_of, options_of, report
 
+if TYPE_CHECKING:
+    from ...studies.critical import NeutralPoint
 
-def add(verbs):
+
+def add(verbs: Any) -> None:
     add_verb(verbs, "critical", _run, "stability critical poiseuille --vary Re",
              vary_option, range_option,
              search_option, long_wave_option, accuracy_options)
 
 
-def vary_option(verb, required=True):
+def vary_option(verb: Any, required: bool = True) -> None:
     verb.add_argument("--vary", required=required, metavar="NAME",
                       help="parameter to solve for")
 
 
-def range_option(verb):
+def range_option(verb: Any) -> None:
     verb.add_argument("--range", metavar="LOW:HIGH", help="values of it to search; default: see stability flows FLOW")
 
 
-def search_option(verb):
+def search_option(verb: Any) -> None:
     verb.add_argument("--search", metavar="LOW:HIGH", help="wavenumbers to search (default 0.01:100, and shorter waves "
                       "in thin layers)")
 
 
-def searched(arguments):
+def searched(arguments: argparse.Namespace) -> dict[Any, Any]:
     """The options --range and --search as arguments of `critical`."""
     from ...checks import check_range
 
@@ -32,19 +38,19 @@ def searched(arguments):
     return {name: check_range(value.split(":"), f"--{names[name]}") for name, value in given.items() if value}
 
 
-def long_wave_option(verb):
+def long_wave_option(verb: Any) -> None:
     verb.add_argument("--long-wave", action="store_true",
                       help="the threshold as k -> 0, even where waves of finite length grow on its stable side")
 
 
-def _run(arguments):
+def _run(arguments: argparse.Namespace) -> int:
     from ...flows.base import check_parameter_name
     from ...studies.critical import critical
 
     flow, options = flow_of(arguments), options_of(arguments)
     vary = check_parameter_name(flow, arguments.vary.replace("-", "_"))
 
-    def compute():
+    def compute() -> "NeutralPoint":
         return critical(flow, vary, long_wave=arguments.long_wave, strict=False, **searched(arguments), **options)
 
     return report(arguments, compute)

@@ -1,6 +1,9 @@
 """stability dispersion: growth rate and phase speed over wavenumbers."""
 
+import argparse
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 from ...errors import ParameterError
 from ...status import INTERRUPTED
@@ -10,18 +13,23 @@ from ..families import answer, each_option
 from ..methods import bvp_settings, method_of, method_options
 from ..specs import parse_spec
 
+if TYPE_CHECKING:
+    import numpy as np
 
-def add(verbs):
+    from ...flows.base import Flow
+
+
+def add(verbs: Any) -> None:
     add_verb(verbs, "dispersion", _run, "stability dispersion dune --Re 100 --k 1e-2:10:50 --plot dune.png",
              k_option, each_option, _mode_option, method_options, accuracy_options)
 
 
-def _mode_option(verb):
+def _mode_option(verb: Any) -> None:
     verb.add_argument("--mode", metavar="MODE", help=f"one of {', '.join(MODES)}; default: surface where the flow has "
                       "a slow surface mode, else the leading mode of the smallest k, followed")
 
 
-def _run(arguments):
+def _run(arguments: argparse.Namespace) -> int:
     options = options_of(arguments)
     wavenumbers = parse_spec(arguments.k, "--k")
     if arguments.mode is not None and arguments.mode not in MODES:
@@ -29,13 +37,14 @@ def _run(arguments):
     return answer(arguments, lambda flow: _question(arguments, flow, wavenumbers, options))
 
 
-def _question(arguments, flow, wavenumbers, options):
+def _question(arguments: argparse.Namespace, flow: "Flow", wavenumbers: "np.ndarray",
+              options: dict[str, Any]) -> Callable[..., Any]:
     mode = arguments.mode or default_mode(flow)
     bvp = method_of(arguments, flow, options["tolerance"])
     if bvp and mode != MODES[0]:
         raise ParameterError(f"--mode {mode}: --method {arguments.method} follows the surface mode only")
 
-    def compute():
+    def compute() -> DispersionRelation:
         parts = _continued(flow, wavenumbers, **bvp) if bvp else dispersion_parts(flow, wavenumbers, mode, **options)
         missing = DispersionRelation(flow, mode, (), dict.fromkeys(wavenumbers.tolist(), INTERRUPTED), ())
         found = collect(arguments, parts, len(wavenumbers), lambda done: [missing], lambda part: len(part.modes))
@@ -45,7 +54,7 @@ def _question(arguments, flow, wavenumbers, options):
     return compute
 
 
-def _continued(flow, wavenumbers, **bvp):
+def _continued(flow: "Flow", wavenumbers: "np.ndarray", **bvp: Any) -> Iterator[Any]:
     """The surface mode by continuation, point by point."""
     from ...bvp.continuation import steps_in_k
 

@@ -1,5 +1,8 @@
 """stability explore: a window with the dispersion relation of a flow and a slider for every parameter."""
 
+import argparse
+from typing import Any
+
 from ...errors import ParameterError
 from ..common import SPEC, add_bare_verb, flow_of
 from ..specs import parse_spec
@@ -10,18 +13,18 @@ _PORT = 8988
 _FILES = "agg", "pdf", "svg", "ps", "cairo", "template", "pgf"  # backends of matplotlib without a window
 
 
-def add(verbs):
+def add(verbs: Any) -> None:
     add_bare_verb(verbs, "explore", _run, "stability explore dune --web", _options)
 
 
-def _options(verb):
+def _options(verb: Any) -> None:
     verb.add_argument("--k", metavar="SPEC", default=_WAVENUMBERS,
                       help=f"wavenumbers: {SPEC} (default {_WAVENUMBERS})")
     verb.add_argument("--web", action="store_true", help="in a browser instead of a window (pip install '.[web]')")
     verb.add_argument("--port", metavar="N", help=f"of the page of --web (default {_PORT}, or the next that is free)")
 
 
-def _run(arguments):
+def _run(arguments: argparse.Namespace) -> Any:
     from ...checks import check_integer
 
     flow, k = flow_of(arguments), parse_spec(arguments.k, "--k")
@@ -41,7 +44,7 @@ def _run(arguments):
     return 0
 
 
-def _open(web, port):
+def _open(web: Any, port: Any) -> None:
     """Choose where figures appear; ParameterError, in one line, where they cannot."""
     import matplotlib
 

@@ -1,19 +1,22 @@
 """stability flows: what can be computed, with parameters, defaults, ranges and scales."""
 
+import argparse
+from typing import Any
+
 from ...flows import FLOWS
 from ...flows.declaration import Declaration, declared
 from ..names import FLOW, flag_of
 from ..streams import put, terminal_width
 
 
-def add(verbs):
+def add(verbs: Any) -> None:
     verb = verbs.add_parser("flows", help="flows, parameters, defaults, ranges, scales",
                             epilog="example: stability flows dune")
     verb.add_argument("flow", nargs="?", metavar="FLOW", help=FLOW)
     verb.set_defaults(run=_run, complete=lambda verb, words: None)
 
 
-def _run(arguments):
+def _run(arguments: argparse.Namespace) -> int:
     from ...flows.catalogue import offers
 
     chosen = [arguments.flow] if arguments.flow else [*FLOWS, *offers()]
@@ -31,7 +34,7 @@ def _describe(flow: Declaration, width: int | None) -> str:
     return "\n".join([f"{flow.name}: {flow.title}", *(f"  {part}" for part in flow.scales.split("; ")), *lines, ""])
 
 
-def _wrapped(rows, width):
+def _wrapped(rows: Any, width: Any) -> Any:
     from textwrap import wrap
 
     return [line for name, default, range_, meaning in rows

@@ -1,5 +1,9 @@
 """stability kmax: the fastest growing wavenumber, over a parameter."""
 
+import argparse
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
 from ...errors import ParameterError, StabilityError
 from ...status import INTERRUPTED, unresolved
 from ...studies.kmax import CREST_MODES, Optima, Optimum, k_max_sweep
@@ -8,29 +12,32 @@ from ..families import answer, each_option
 from ..methods import bvp_settings, method_of, method_options
 from .critical import search_option, searched
 
+if TYPE_CHECKING:
+    from ...flows.base import Flow
 
-def add(verbs):
+
+def add(verbs: Any) -> None:
     add_verb(verbs, "kmax", _run, "stability kmax dune --over Re=0.1:1e4:41 --plot kmax.png",
              _over_option, each_option, _mode_option, search_option, method_options, accuracy_options)
 
 
-def _over_option(verb):
+def _over_option(verb: Any) -> None:
     verb.add_argument("--over", metavar="NAME=SPEC", help=f"parameter to sweep and its values: {SPEC}")
 
 
-def _mode_option(verb):
+def _mode_option(verb: Any) -> None:
     verb.add_argument("--mode", metavar="MODE", help=f"one of {', '.join(CREST_MODES)}: the slow surface mode alone "
                       "(default of flows that are ill posed), or the fastest of all modes (default elsewhere)")
 
 
-def _run(arguments):
+def _run(arguments: argparse.Namespace) -> int:
     if arguments.mode and arguments.mode not in CREST_MODES:
         raise ParameterError(f"--mode: must be one of {', '.join(CREST_MODES)} (got {arguments.mode!r})")
     options = options_of(arguments)
     return answer(arguments, lambda flow: _question(arguments, flow, options))
 
 
-def _question(arguments, flow, options):
+def _question(arguments: argparse.Namespace, flow: "Flow", options: dict[str, Any]) -> Callable[..., Any]:
     name, sweep = sweep_of(arguments, flow)
     bvps = [method_of(arguments, one, options["tolerance"]) for one in sweep]
     if bvps[0] is not None and not flow.has_surface_mode():
@@ -40,7 +47,7 @@ def _question(arguments, flow, options):
         if bvps[0] is not None and getattr(arguments, option) is not None:
             raise ParameterError(f"--{option}: --method {arguments.method} does not use it; leave it out")
 
-    def compute():
+    def compute() -> Any:
         optima = map(_bounded, sweep, bvps) if bvps[0] is not None else \
             k_max_sweep(sweep, mode=arguments.mode, **searched(arguments), **options)
         found = collect(arguments, optima, len(sweep),
@@ -50,7 +57,7 @@ def _question(arguments, flow, options):
     return compute
 
 
-def _bounded(flow, bvp):
+def _bounded(flow: "Flow", bvp: Any) -> Optimum:
     """The optimum of a flow by bounded minimisation over solve_bvp's growth rates; the first maximum only."""
     from ...bvp.continuation import bounded_maximum
 

@@ -1,6 +1,8 @@
 """stability map: a quantity over a grid of one to three parameters, on all cores, resumed where it was stopped."""
 
+import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from ...checks import check_integer
 from ...errors import ParameterError
@@ -22,16 +24,19 @@ from ..specs import parse_spec
 from ..streams import say
 from .critical import vary_option
 
+if TYPE_CHECKING:
+    from ...studies.request import Request
+
 _DRAWN_AXES = 2
 
 
-def add(verbs):
+def add(verbs: Any) -> None:
     add_verb(verbs, "map", _run,
              "stability map dune --over shields=1.1:4:20 --over Re=0.1:1e4:20 -o dunes.csv --plot dunes.png",
              _options, accuracy_options)
 
 
-def _options(verb):
+def _options(verb: Any) -> None:
     verb.add_argument("--over", action="append", default=[], metavar="NAME=SPEC",
                       help=f"parameter to sweep and its values, once to three times, the innermost last: {SPEC}")
     verb.add_argument("--quantity", metavar="Q", help="k_max (the default), growth_rate (the default with --k), or "
@@ -41,7 +46,7 @@ def _options(verb):
     verb.add_argument("--workers", metavar="N", help="processes; default: as many as there are cores to use")
 
 
-def _run(arguments):
+def _run(arguments: Any) -> Any:
     from ...studies.map import carry_out
     from ...studies.pool import MOST_WORKERS, cores
 
@@ -68,7 +73,7 @@ def _run(arguments):
     return status
 
 
-def _request(arguments):
+def _request(arguments: argparse.Namespace) -> "Request":
     from ...studies.request import Request, usual_quantity
 
     flow, accuracy = flow_of(arguments), accuracy_of(arguments)
@@ -85,7 +90,7 @@ def _request(arguments):
     return Request(flow, over, arguments.quantity or usual_quantity(k, vary), k, vary, accuracy)
 
 
-def _check_output(arguments, request):
+def _check_output(arguments: argparse.Namespace, request: "Request") -> None:
     if arguments.output is None:
         raise ParameterError("-o FILE is needed, .csv, .json or .nc: a map is kept beside it while it is computed")
     if form_of(arguments) == "table":

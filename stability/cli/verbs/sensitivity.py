@@ -1,37 +1,42 @@
 """stability sensitivity: how growth rate and phase speed change with every parameter."""
 
+import argparse
 from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 from ...errors import ModeLost, ParameterError
 from ...studies.dispersion import MODES, default_mode, dispersion
 from ..common import accuracy_options, add_verb, flow_of, options_of, report
 from ..specs import parse_one
 
+if TYPE_CHECKING:
+    from ...studies.sensitivity import Sensitivities
+
 _MODES = MODES[:2]  # a mode that can be followed
 
 
-def add(verbs):
+def add(verbs: Any) -> None:
     add_verb(verbs, "sensitivity", _run, "stability sensitivity dune --k 1 --plot dune.png",
              _k_option, _mode_option, accuracy_options)
 
 
-def _k_option(verb):
+def _k_option(verb: Any) -> None:
     verb.add_argument("--k", required=True, metavar="K", help="wavenumber")
 
 
-def _mode_option(verb):
+def _mode_option(verb: Any) -> None:
     verb.add_argument("--mode", metavar="MODE", help=f"one of {', '.join(_MODES)}; default: surface where the flow has "
                       "a slow surface mode")
 
 
-def _run(arguments):
+def _run(arguments: argparse.Namespace) -> int:
     flow, options = flow_of(arguments), options_of(arguments)
     k = parse_one(arguments.k, "--k", "wavenumber")
     mode = arguments.mode or default_mode(flow)
     if mode not in _MODES:
         raise ParameterError(f"--mode: must be one of {', '.join(_MODES)} (got {mode!r})")
 
-    def compute():
+    def compute() -> "Sensitivities":
         from ...studies.sensitivity import sensitivities
 
         relation = dispersion(flow, k, mode, strict=False, **options)
