@@ -251,7 +251,7 @@ def _rung(k: float, step: float) -> float:
     return rung if abs(log(rung / k)) > 0.5 * abs(step) and (rung - k) * step > 0 else ahead
 
 
-def _told(mode: Any) -> complex:
+def _told(mode: "Mode") -> complex:
     """Its sigma, parts within the error left out: they are noise."""
     real, imag = (0.0 if abs(part) <= mode.error else part for part in (mode.sigma.real, mode.sigma.imag))
     return complex(real, imag)
