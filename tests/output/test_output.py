@@ -18,8 +18,10 @@ def test_without_a_width_every_digit_is_shown():
     assert f"{ROWS[1]['growth_rate']:.10g}" in table(ROWS)
 
 
-@pytest.mark.parametrize("rows", [ROWS, k_max(flows.Dune()).rows()], ids=["dispersion", "kmax"])
-@pytest.mark.parametrize("width", [60, 62])
+@pytest.mark.parametrize(("rows", "width"), [
+    pytest.param(rows, width, id=f"{width}-{name}")
+    for name, rows, widths in (("dispersion", ROWS, (80, 82)), ("kmax", k_max(flows.Dune()).rows(), (60, 62)))
+    for width in widths])
 def test_digits_give_way_to_the_width(rows, width):
     lines = table(rows, width).splitlines()
     assert max(map(len, lines)) <= width < max(map(len, table(rows).splitlines()))

@@ -231,7 +231,7 @@ def test_overlays_are_points_with_errors_or_computed_curves(tmp_path, relation):
     measured, theory = tmp_path / "measured.csv", tmp_path / "a:b.csv"
     measured.write_text("k , growth_rate,growth_rate_error, k_error\n1,0.2,0.05,0.1\n0.5,0.15,0.03,0.1\n2,,,\n")
     relation.to_csv(theory)
-    panel, speeds = relation.panels()
+    panel, speeds, _ = relation.panels()
     points = read_overlay(f"{measured}:experiments: 2024")
     curve = points.curve(panel)
     assert points.label == "experiments: 2024"
@@ -248,7 +248,7 @@ def test_overlays_are_points_with_errors_or_computed_curves(tmp_path, relation):
 
 
 @pytest.mark.parametrize(("text", "complaint"), [
-    ("k,speed\n1,2\n", "has no columns k and growth_rate or k and phase_speed; it has k, speed"),
+    ("k,speed\n1,2\n", "has no columns k and growth_rate or k and phase_speed or k and group_speed; it has k, speed"),
     ("k\n", "has no rows below the names of its columns"),
     ("k,growth_rate\n1\n", "row 1 has 1 cells, and there are 2 columns"),
     ("k,k\n1,2\n", "has two columns of the same name"),
