@@ -11,7 +11,8 @@ import sympy as sp
 from . import __version__
 from .series import Expansion
 
-_COLUMNS = "k", "growth_rate", "phase_speed", "error", "degree", "status"  # as `stability dispersion` has them
+_COLUMNS = ("k", "growth_rate", "phase_speed", "error", "group_speed", "group_error", "degree", "status")
+"""As `stability dispersion` has them."""
 _FUNCTIONS = {
     "gamma": "the gamma function", "log": "the natural logarithm",
     "WallResponse": "response of the fluid's shear stress to a wavy wall of unit amplitude, Psi''(0)/s0 of "
@@ -110,8 +111,9 @@ def numbers(expansion: Expansion, k: np.ndarray, form: str | None) -> str:
     """The series at wavenumbers k in the columns of `stability dispersion`: without error bars, for it has none."""
     highest = max(power for power, c in expansion.terms.items() if c != 0)
     status = f"series to k^{highest}; error O(k^{expansion.next_power})"
-    rows = [dict(zip(_COLUMNS, (one, sigma.real, -sigma.imag / one + 0.0, None, None, status), strict=True))
-            for one, sigma in zip(k.tolist(), expansion.function()(k).tolist(), strict=True)]
+    sigma, slope = (series.function()(k).tolist() for series in (expansion, expansion.derivative()))
+    rows = [dict(zip(_COLUMNS, (one, here.real, -here.imag / one + 0.0, None, -steep.imag + 0.0, None, None, status),
+                     strict=True)) for one, here, steep in zip(k.tolist(), sigma, slope, strict=True)]
     parameters = {name: float(value) if value is not None else None for name, value in expansion.parameters.items()}
     header = {"flow": expansion.flow, "method": "expansion", "version": __version__}
     about = {"regime": expansion.regime, "order": str(highest)}

@@ -118,6 +118,16 @@ class Expansion:
         terms = {p: c for p, c in self.terms.items() if p <= power}
         return replace(self, terms=terms, next_power=min([*left_out, self.next_power]))
 
+    def derivative(self) -> "Expansion":
+        """The slope of the sum in the gauge; raises nothing.
+
+        >>> from asymptotics import expand
+        >>> print(expand("film").derivative().terms[0])
+        -2*I
+        """
+        terms = {power - 1: power * c for power, c in self.terms.items() if power != 0}
+        return replace(self, terms=terms, next_power=self.next_power - 1)
+
     def function(self, **values: Any) -> Callable[[Any], Any]:
         """A numpy function of the gauge (shape in, same shape out, complex), all parameters being numbers.
 

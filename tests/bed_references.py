@@ -116,10 +116,11 @@ def _determinant(walk, k, rho, conditions):
     def determinant(sigma):
         with mp.extraprec(40):
             law, tau, steps = walk(mp.mp.prec)
-            states, speed = _climbed(law, steps, k, rho, sigma)
+            states, speed, largest = _climbed(law, steps, k, rho, sigma)
             one, other = (conditions(state, tau, speed, sigma) for state in states)
             D = one[0] * other[1] - one[1] * other[0]
-        return D, mp.mag(D) - mp.mp.prec if D else -mp.mp.prec
+            lost = max(largest[0] * max(map(abs, other)), largest[1] * max(map(abs, one)))
+        return D, mp.mag(lost) - mp.mp.prec - 24  # of 40 bits more
 
     return determinant
 
@@ -140,14 +141,18 @@ def _steps(law, tau, creep):
 
 
 def _climbed(law, steps, k, rho, sigma):
-    """The states (v, w, t, n) that two solutions have at the end, and the velocity there over that at the start."""
+    """The states (v, w, t, n) that two solutions have at the end, the velocity there over that at the start, and the
+    largest term of each solution."""
     start = (None, mp.mpf(0)) if law.yields else (mp.mpf(0), mp.mpf(0))
     states, speed = [(*start, mp.mpf(t), mp.mpf(n)) for t, n in ((1, 0), (0, 1))], mp.mpf(0)
+    largest = [mp.mpf(1), mp.mpf(1)]
     for number, (step, base) in enumerate(steps):
         singular = law.yields and not number
-        states = [_advance(base, k, rho, sigma, speed, state, step, singular) for state in states]
+        found = [_advance(base, k, rho, sigma, speed, state, step, singular) for state in states]
+        states = [state for state, _ in found]
+        largest = [max(pair) for pair in zip(largest, (size for _, size in found), strict=True)]
         speed += mp.fsum(base.U.c)
-    return states, speed
+    return states, speed, largest
 
 
 def _bottom(law, tau, creep):
@@ -229,7 +234,7 @@ class _Column:
 
 
 def _advance(base, k, rho, sigma, speed, state, step, singular):
-    """The state (v, w, t, n) a step further: u = g v."""
+    """The state (v, w, t, n) a step further, u = g v, and the largest term."""
     bits = mp.mp.prec + 40
 
     def fixed(x):
@@ -270,7 +275,10 @@ def _advance(base, k, rho, sigma, speed, state, step, singular):
             v.append(shear(m) / (Fixed(m * g[1] + dg[0], 0, bits) - ik2 * Fixed(twist[0], 0, bits)))
         else:
             v.append(known / Fixed((j + 1) * g[0], 0, bits))
-    return [column.number() for column in (v, w, t, n)]
+    sides = [side for column in (v, w, t, n) for side in (column.re, column.im)]
+    largest = max(abs(x) for side in sides for x in side)
+    tail = max(abs(x) for side in sides for x in side[-4:]) << (mp.mp.prec - 16)  # what is cut off counts as rounding
+    return [column.number() for column in (v, w, t, n)], mp.ldexp(max(largest, tail), -bits)
 
 
 def _slopes(v, g_, m):

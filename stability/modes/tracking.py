@@ -176,7 +176,7 @@ class Walk(Walker):
 
     def _lost(self, why: Any) -> Any:
         return ModeLost(f"{self.solver.flow}: the mode is lost at k = {self.now.k:.6g}, "
-                        f"sigma = {self.now.sigma:.6g}: {why}")
+                        f"sigma = {_told(self.now):.6g}: {why}")
 
     def foresee(self, k: float) -> tuple[Any, ...]:
         """Extrapolate rate and vectors to k from the last two modes."""
@@ -249,6 +249,12 @@ def _rung(k: float, step: float) -> float:
     index = log(ahead) / _RUNG
     rung = exp(_RUNG * (floor(index) if step > 0 else ceil(index)))
     return rung if abs(log(rung / k)) > 0.5 * abs(step) and (rung - k) * step > 0 else ahead
+
+
+def _told(mode: "Mode") -> complex:
+    """Its sigma, parts within the error left out: they are noise."""
+    real, imag = (0.0 if abs(part) <= mode.error else part for part in (mode.sigma.real, mode.sigma.imag))
+    return complex(real, imag)
 
 
 def _likely(start: float, end: float, step: float) -> list[float]:

@@ -13,7 +13,7 @@ At many wavenumbers each has its own factorisation and all else is done together
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -57,9 +57,9 @@ class Eigen:
 
     def split(self) -> "list[Eigen]":
         """Return the eigenvalues of the points, each on its own."""
-        bars = (getattr(self, name).tolist() for name in ("truncation", "rounding", "spread", "scatter", "left"))
-        return [Eigen(*values) for values in zip(self.rate, self.slope, *bars, self.x, self.y, self.settled.tolist(),
-                                                 strict=True)]
+        columns = {field.name: getattr(self, field.name) for field in fields(self)}
+        columns |= {name: columns[name].tolist() for name in ("truncation", "rounding", "spread", "settled")}  # cheaper
+        return [Eigen(*values) for values in zip(*columns.values(), strict=True)]
 
 
 def refine(pencil: Any, weights: Any, rate: complex, x: np.ndarray | None = None, y: np.ndarray | None = None,

@@ -122,7 +122,7 @@ class Paced(Walk):
     """A walk whose attempts all succeed with a given step in log k, at the largest degree."""
 
     def __init__(self, solver, pace):
-        super().__init__(solver, SimpleNamespace(k=1.0, sigma=1.0, degree=512, truncation=0.0))
+        super().__init__(solver, SimpleNamespace(k=1.0, sigma=1.0, error=0.0, degree=512, truncation=0.0))
         self.pace, self.attempts = pace, 0
 
     def _advance(self, k):

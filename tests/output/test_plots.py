@@ -248,7 +248,8 @@ def test_overlays_are_points_with_errors_or_computed_curves(tmp_path, relation):
 
 
 @pytest.mark.parametrize(("text", "complaint"), [
-    ("k,speed\n1,2\n", "has no columns k and growth_rate or k and phase_speed or k and group_speed; it has k, speed"),
+    ("k,speed\n1,2\n", "has no columns k and growth_rate or k and phase_speed or k and "
+     "group_speed; it has k, speed"),
     ("k\n", "has no rows below the names of its columns"),
     ("k,growth_rate\n1\n", "row 1 has 1 cells, and there are 2 columns"),
     ("k,k\n1,2\n", "has two columns of the same name"),

@@ -23,7 +23,7 @@ def short(monkeypatch):
     module = sys.modules["stability.studies.compare"]
     monkeypatch.setattr(module, "_SECONDS", 0.0)
     monkeypatch.setattr(module, "_REPEATS", 1)
-    monkeypatch.setattr(module, "POINTS", 5)
+    monkeypatch.setattr(module, "SWEEP_POINTS", 5)
     monkeypatch.setattr(module, "COLLOCATION_DEGREES", (8, 16, 32))
     monkeypatch.setattr(module, "DENSE_DEGREES", (8, 16, 32))
     monkeypatch.setattr(module, "RESIDUALS", (1e-3, 1e-6))
