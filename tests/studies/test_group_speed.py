@@ -47,7 +47,7 @@ def reference(mode, eigenvalue, flow):
         return (ends[1] - ends[0]) / (2 * k * h)
 
 
-@pytest.mark.parametrize(("flow", "k", "eigenvalue"), CASES, ids=lambda part: getattr(part, "__name__", str(part)))
+@pytest.mark.parametrize(("flow", "k", "eigenvalue"), CASES, ids=lambda one: getattr(one, "__name__", str(one)))
 def test_group_speed_is_that_of_the_reference(flow, k, eigenvalue):
     (mode,) = dispersion(flow, k).modes
     slope = reference(mode, eigenvalue, flow)
