@@ -9,10 +9,9 @@ import pytest
 import references
 
 from stability import ModeLost, dispersion, flows, spectrum
-from stability.modes import memory
+from stability.modes import branch, crests, memory
 from stability.modes.accuracy import Accuracy
 from stability.modes.branch import surface_branch, surface_mode
-from stability.modes.memory import forget
 from stability.modes.solver import Solver
 from stability.modes.tracking import Walk
 
@@ -258,7 +257,7 @@ def test_what_lands_on_another_mode_is_refined_alone(monkeypatch):
     right = dispersion(flow, wavenumbers).sigma
     others = {k: min(spectrum(flow, k, 3).modes, key=lambda mode: -abs(mode.sigma - one))
               for k, one in zip(wavenumbers.tolist(), right, strict=True)}
-    forget()
+    memory.forget()
     taken = []
 
     def astray(solver, ks, *question):
@@ -268,7 +267,7 @@ def test_what_lands_on_another_mode_is_refined_alone(monkeypatch):
     monkeypatch.setattr(Solver, "solve_many", astray)
     assert dispersion(flow, wavenumbers).sigma == pytest.approx(right, rel=1e-12)
     assert set(taken) & set(others)
-    forget()
+    memory.forget()
 
 
 CROWDED, CROSSING = (flows.Dune(shields=10.0, Re=0.3), 8.1), (flows.Vortex(slope_deg=21.215735, Fr2=0.77673), 2.0)
@@ -320,3 +319,41 @@ def test_a_real_mode_stays_real_where_no_collision_is_found(monkeypatch):
         monkeypatch.setattr(Walk, "checks", checks)
         assert walk.stride(pair.k, log(pair.k / real.k)) == taken
     assert Walk(Solver(flows.Dune()), real).same_kind(pair, None)  # of complex matrices no mode is real
+
+
+def impostor(k):
+    """The surface mode of a film at k, and another mode there."""
+    film = flows.Film(Re=200.0)
+    right = dispersion(film, k).modes[0]
+    return film, right, max(spectrum(film, k, 3).modes, key=lambda mode: abs(mode.sigma - right.sigma))
+
+
+@pytest.mark.parametrize(("near", "overlap", "keeps"), [
+    (True, True, True), (False, True, True), (True, False, True), (False, False, False)])
+def test_a_wavenumber_alone_that_lands_on_another_mode_is_walked_to(monkeypatch, near, overlap, keeps):
+    """Either check does, and without both the other mode is taken."""
+    film, right, other = impostor(1.013)
+    memory.forget()
+    solved, first = branch.Branch._solved, [other]
+    monkeypatch.setattr(branch.Branch, "_solved", lambda *question: first.pop() if first else solved(*question))
+    if not near:
+        monkeypatch.setattr(branch, "_near", lambda *_: True)
+    if not overlap:
+        monkeypatch.setattr(branch, "_ASTRAY", np.inf)
+    (found,) = dispersion(film, right.k).modes
+    memory.forget()
+    assert not first
+    assert (abs(found.sigma - right.sigma) < 1e-10) == keeps
+
+
+@pytest.mark.parametrize(("overlap", "keeps"), [(0.3, True), (np.inf, False)])
+def test_a_step_towards_a_crest_that_lands_on_another_mode_is_walked(monkeypatch, overlap, keeps):
+    film, right, other = impostor(1.013)
+    solver = Solver(film)
+    solve, first = solver.solve, [other]
+    monkeypatch.setattr(solver, "solve", lambda *question: first.pop() if first else solve(*question))
+    monkeypatch.setattr(crests, "_OVERLAP", overlap)
+    near = dispersion(film, 1.0).modes[0]
+    found, _ = crests._moved(solver, near, right.k)
+    assert not first
+    assert (abs(found.sigma - right.sigma) < 1e-10) == keeps
