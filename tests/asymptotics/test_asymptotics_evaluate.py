@@ -55,6 +55,7 @@ def test_numbers_are_near_those_of_dispersion(tmp_path, capsys, name):
     off = np.abs(sigma / relation.sigma - 1)
     assert off.max() < 1e-2
     assert off[0] <= off[-1] + 1e-14
+    assert np.all(abs(series["group_speed"] - relation.group_speed) <= 3e-2 * abs(relation.group_speed) + 1e-12)
     assert {row["status"].partition(";")[0].partition("^")[0] for row in series} == {"series to k"}
 
 
