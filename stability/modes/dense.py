@@ -74,12 +74,12 @@ def _eigenvalues(g: np.ndarray, rank: int | None) -> np.ndarray:
 def _finite_count(solver: "Solver", degree: int) -> int:
     """How many eigenvalues are finite: one per degree for every layer that carries the rate, plus a constant."""
     system = solver.assembly.system
-    count = _smallest_count(_Structure(system.pattern, proxy(solver.assembly)))
+    count = smallest_count(Pattern(system.pattern, proxy(solver.assembly)))
     return count + (degree - _SMALL) * system.dynamic_layers
 
 
 @dataclass(frozen=True)
-class _Structure:
+class Pattern:
     """What the number of finite eigenvalues depends on, and an assembly that has it: a proxy, to keep no matrices."""
 
     pattern: tuple
@@ -87,8 +87,8 @@ class _Structure:
 
 
 @lru_cache(maxsize=32)
-def _smallest_count(structure: "_Structure") -> int:
+def smallest_count(structure: "Pattern") -> int:
     """Finite eigenvalues at the smallest degree: read off the gap in theta with all symbols 1."""
-    small = structure.assembly.pencil(_SMALL)
+    small = structure.assembly.generic(_SMALL)
     sizes = np.abs(_theta(small, np.ones(len(small.parts)))[0])
     return int(np.argmin(sizes[1:] / np.maximum(sizes[:-1], np.finfo(float).tiny))) + 1

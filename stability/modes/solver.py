@@ -29,6 +29,7 @@ _VECTOR, _ROUGHEST = 0.01, 1e-6  # error of vectors without bars, in units of th
 _GLANCE = 0.3  # relative distance of a rate from a long-wave limit at which a mode may be meant
 _SCATTER = 40.0  # error of a slope from vectors right to rounding, in units of error times 1 or 1/k (measured)
 _LEAST = 32  # degree of the smallest table of entries
+_DECADES = 3.0  # that coefficients span at most where only structure counts: eigenvalues stand out from rounding
 _SMALL = 1024  # degree times terms of the longest series up to which layouts, some megabytes each, are kept ...
 _LAYOUTS, _TABLES = 48, 8  # ... for other flows, and how many
 _TOGETHER = 64, 4096  # points refined at once, and those times the degree: bounds the memory
@@ -58,6 +59,15 @@ class Assembly:
                 self._values[layout.table] = layout.table.values(self.system.coefficients)
             self._pencils[degree] = Pencil(layout, self._values[layout.table], self.system)
         return self._pencils[degree]
+
+    def generic(self, degree: int) -> Pencil:
+        """The pencil of this degree with coefficients brought to similar sizes: of it holds what depends on the
+        structure alone, which enormous ratios of numbers would hide."""
+        coefficients, layout = self.system.coefficients, self._layout(degree)
+        sizes = np.abs(coefficients)
+        decades = np.log10(sizes.max() / sizes.min())
+        values = layout.table.values(coefficients * sizes ** (min(1.0, _DECADES / max(decades, _DECADES)) - 1))
+        return Pencil(layout, values, self.system)
 
     @property
     def small(self) -> bool:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from stability import dispersion, flows
+from stability.modes import dense
 from stability.modes.dense import finite_rates
 from stability.modes.solver import Solver
 from stability.numerics import refine
@@ -43,3 +44,20 @@ def test_a_settled_quotient_is_right_to_rounding_wherever_it_starts(start):
     found = Solver(flows.Dune()).solve(1.0, start * mode.rate, None, mode.degree)
     assert abs(found.sigma - mode.sigma) <= found.error + mode.error
     assert abs(found.slope - mode.slope) <= 4 * refine.VECTOR * abs(mode.slope)
+
+
+@pytest.mark.parametrize("extreme", [
+    flows.PlaneShear(inertia=1e12), flows.PlaneShear(inertial=1e-9), flows.Couette(Re=1e18),
+    flows.Film(Re=1e-16, We=1e19), flows.TwoLayerCouette(viscosity_ratio=1e12), flows.RollWave(Fr2=1e-15)], ids=str)
+def test_how_many_eigenvalues_are_finite_does_not_depend_on_sizes(extreme):
+    """It is remembered for flows of the same structure: counted of an extreme one it must be right for all."""
+    def count(flow, pencil):
+        assembly = Solver(flow).assembly
+        assembly.generic = getattr(assembly, pencil)
+        dense.smallest_count.cache_clear()
+        return dense.smallest_count(dense.Pattern(assembly.system.pattern, assembly))
+
+    usual = count(type(extreme)(), "generic")
+    assert count(type(extreme)(), "pencil") == count(extreme, "generic") == usual
+    assert count(extreme, "pencil") != usual
+    dense.smallest_count.cache_clear()
