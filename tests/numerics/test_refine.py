@@ -61,3 +61,8 @@ def test_how_many_eigenvalues_are_finite_does_not_depend_on_sizes(extreme):
     assert count(type(extreme)(), "pencil") == count(extreme, "generic") == usual
     assert count(extreme, "pencil") != usual
     dense.smallest_count.cache_clear()
+
+
+@pytest.mark.parametrize(("errors", "settled"), [((0.5, 0.5), True), ((2.0, 0.5), False), ((0.5, 2.0), False)])
+def test_both_vectors_must_be_right(errors, settled):
+    assert bool(refine._settled(*(error * refine.VECTOR for error in errors))) is settled
