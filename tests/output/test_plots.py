@@ -15,8 +15,8 @@ from stability import ParameterError, dispersion, flows, load
 from stability.cli import main
 from stability.output.look import Look, parse_size, read_style
 from stability.output.overlay import read_overlay
-from stability.output.panels import scale_found, scale_of
-from stability.output.plots import draw
+from stability.output.panels import Axis, Curve, Panel, scale_found, scale_of
+from stability.output.plots import draw, plot
 from stability.output.style import COLOURS, STYLE
 from stability.output.symbols import assigned, symbol, symbol_of, title_of, value_text
 
@@ -286,3 +286,11 @@ def test_values_that_were_found_are_drawn_in_logarithms_where_they_span_decades(
     """Two neutral curves of a film: of its surface at Re ~ 1, of its shear at Re ~ 10^4."""
     assert scale_found([1.2, 1.3, 1.5, 9e3, 2e4]) == "log"
     assert scale_found([1.2, 1.3, 1.5]) == scale_found([-1.0, 100.0]) == scale_found([]) == "linear"
+
+
+def test_error_bars_lie_along_their_axes():
+    curve = Curve(np.array([1.0, 2.0]), np.array([1.0, 3.0]), x_error=np.full(2, 0.3), y_error=np.full(2, 0.1))
+    axes = plot((Panel(Axis("k", "k"), Axis("y", "y"), (curve,)),), Figure().add_subplot())
+    across, along = (np.ptp(np.array(bars.get_segments()), axis=1).mean(axis=0) for bars in axes.collections)
+    assert across == pytest.approx([0.6, 0.0])
+    assert along == pytest.approx([0.0, 0.2])

@@ -149,3 +149,9 @@ def test_endings_that_are_not_known_are_refused(tmp_path, capsys, ending):
     assert main(["dispersion", "vortex", "--k", "1", "-o", str(tmp_path / f"x{ending}")]) == 2
     assert "cannot be written; .csv, .json, .nc are known, .txt and no ending give a table" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_whole_numbers_stay_whole(tmp_path):
+    path = tmp_path / "whole.csv"
+    path.write_text("k,degree\n1.5,12\n2.5,14\n")
+    assert [type(one) for one in read_csv(path, "x")[1]["degree"]] == [int, int]
