@@ -15,7 +15,7 @@ import numpy as np
 
 BEND = 0.01  # relative departure of the difference from a few powers that is not blamed on the numerics
 _TERMS = 4  # of a fit, if there are more points than that
-_STEPS = 1 / 3, 1 / 2, 2 / 3, 1.0, 2.0  # between successive powers of the problems there are
+STEPS = 1 / 3, 1 / 2, 2 / 3, 1.0, 2.0  # between successive powers of the problems there are
 _ROUNDING = np.finfo(float).eps  # of the largest difference: where another one vanishes
 _FEWEST = 6  # points of a fit, if there are as many
 _SHRINK = 0.9  # of the number of points from one attempt to the next
@@ -41,6 +41,11 @@ class Fit:
     @property
     def stands_out(self) -> bool:
         return abs(self.value) > _STANDARD_ERRORS * self.error
+
+    @property
+    def is_good(self) -> bool:
+        """Whether its powers explain the difference."""
+        return self.misfit <= _GOOD
 
 
 @dataclass(frozen=True)
@@ -104,10 +109,10 @@ def explain(k: np.ndarray, difference: np.ndarray, error: np.ndarray, below: lis
             return _fit(k[:points], difference[:points], error[:points], powers[:count])
 
         usual = fit(expected)
-        if usual.misfit <= _GOOD:
+        if usual.is_good:
             return Explanation(expected, usual, fit(known[-1]) if known else None, coefficients)
         for found in map(fit, candidates):
-            if found.misfit <= _GOOD and found.misfit * _BETTER < usual.misfit and found.stands_out:
+            if found.is_good and found.misfit * _BETTER < usual.misfit and found.stands_out:
                 return Explanation(expected, found, None, coefficients)
     return Explanation(expected, None, None, coefficients)
 
@@ -129,18 +134,18 @@ def _windows(points: int) -> Iterator[Any]:
     yield points
 
 
-def extrapolate(k: np.ndarray, values: np.ndarray, error: np.ndarray, steps: tuple[Any, ...] = _STEPS) -> Fit:
+def extrapolate(k: np.ndarray, values: np.ndarray, error: np.ndarray, steps: tuple[float, ...] = STEPS) -> Fit:
     """The constant that real values of shape (points,) tend to as k -> 0, by a few powers of one of the `steps`.
 
     From all points or, where no step explains those, from the smallest; the steps that explain them agree within the
-    `error`. A `misfit` above 1 means that none does: k is too large to tell.
+    `error`. Where none does the fit is not good: k is too large to tell.
     """
     for points in _windows(len(k)):
         count = min(_TERMS, points - 1)
         fits = [_fit(k[:points], values[:points], error[:points], [step * number for number in range(count)])
                 for step in steps]
         best = min(fits, key=lambda fit: fit.misfit)
-        if best.misfit <= _GOOD:
+        if best.is_good:
             break
     doubt = max(abs(fit.value - best.value) for fit in fits if fit.misfit <= max(_ALSO * best.misfit, _EXACT))
     return replace(best, error=best.error * min(1.0, best.misfit) + doubt)  # the fit may be far better than `BEND`

@@ -6,22 +6,17 @@ coefficient of their own: the growth of long waves is often of higher order than
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .claims import claim_of
 from .comparison import PART_NAMES, LimitMismatch, TooFewPoints
-from .explain import extrapolate, is_astray
+from .explain import STEPS, extrapolate, is_astray
 from .points import DECADES, FEWEST, PARTS, check_part, points_of
 
-if TYPE_CHECKING:
-    from .series import Expansion
-
 LIMIT = 1e-3  # relative tolerance: a tenth of the 1 % by which a wrong limit should be found
-_STANDARD_ERRORS = 5.0  # by which a limit must be off before that is said, and not that k is too large
 _KNOWN = 0.1  # relative error up to which a limit is known at all
-_EXPLAINED = 1.0  # misfit up to which a few powers explain the ratio
 
 
 @dataclass(frozen=True)
@@ -38,18 +33,11 @@ class Limit:
     expected: float
     scale: float
     power: float = 0.0
-    misfit: float = 0.0
-    astray: bool = False  # whether the numerics do not even behave like what is expected at the smallest k
+    is_other: bool = False  # whether the numerics tend to something else, and k cannot be to blame
 
     def agrees(self, tolerance: float) -> bool:
         """Whether value and error lie within the tolerance, relative to `scale`."""
         return abs(self.value - self.expected) <= tolerance * self.scale and self.error <= tolerance * self.scale
-
-    @property
-    def is_explained(self) -> bool:
-        """Whether the numerics differ from what is expected by so much that k cannot be to blame."""
-        known = self.misfit <= _EXPLAINED and self.error <= _KNOWN * self.scale
-        return known and not self.astray and abs(self.value - self.expected) > _STANDARD_ERRORS * self.error
 
     def __str__(self) -> str:
         power = "" if self.power == 1 else f"^{Fraction(self.power).limit_denominator(12)}"
@@ -114,35 +102,32 @@ def _limit(name: str, expected: Any, k: np.ndarray, values: np.ndarray, asymptot
     """The limit of a part, None where nothing is known of it."""
     values = getattr(values, name)
     if hasattr(expected, "next_power"):
-        return _coefficient(name, expected, k, values, floor)
+        claim = claim_of(expected, None)
+        known = claim.coefficients[name]
+        if not known:
+            return None
+        power = min(known)
+        first = known[power] * k**power
+        return _extrapolated(name, k, values, first, first, floor, known[power], power, (claim.step,))
     part, whole = getattr(asymptote, name), np.abs(asymptote)
+    scale = np.ones(len(k)) if not whole.all() else part if part.all() else whole
+    return _extrapolated(name, k, values, part, scale, floor, float(scale[0]) if np.isscalar(expected) else 1.0)
+
+
+def _extrapolated(name: str, k: np.ndarray, values: np.ndarray, part: np.ndarray, scale: np.ndarray, floor: np.ndarray,
+                  unit: float, power: float = 0.0, steps: tuple[float, ...] = STEPS) -> Limit:
+    """The limit of values over `scale`, times `unit`: expected to be that of `part`, or 0 where that has zeros."""
+    fit = extrapolate(k, (values - part) / scale, floor / np.abs(scale), steps)
     vanishes = not part.all()
-    scale = np.ones(len(k)) if not whole.all() else whole if vanishes else part
-    fit = extrapolate(k, (values - part) / scale, floor / np.abs(scale))
-    astray = not vanishes and is_astray(k, values / scale, {0.0: 1.0})
-    if np.isscalar(expected):
-        size, value = float(abs(scale[0])), float(part[0])
-        return Limit(name, fit.value * float(scale[0]) + value, fit.error * size, value, size, 0.0, fit.misfit, astray)
-    return Limit(name, fit.value + (not vanishes), fit.error, float(not vanishes), 1.0, 0.0, fit.misfit, astray)
-
-
-def _coefficient(name: str, law: "Expansion", k: np.ndarray, values: np.ndarray, floor: np.ndarray) -> Limit | None:
-    """The first coefficient of a part of an expansion."""
-    claim = claim_of(law, None)
-    known = claim.coefficients[name]
-    if not known:
-        return None
-    power = min(known)
-    first = known[power]
-    scale = first * k**power
-    fit = extrapolate(k, values / scale - 1, floor / np.abs(scale), (claim.step,))
-    return Limit(name, first * (1 + fit.value), abs(first) * fit.error, first, abs(first), power, fit.misfit,
-                 is_astray(k, values / scale, {0.0: 1.0}))
+    astray = not vanishes and is_astray(k, values / scale, {0.0: 1.0})  # they do not even behave alike
+    other = fit.is_good and fit.stands_out and fit.error <= _KNOWN and not astray
+    expected = 0.0 if vanishes else unit
+    return Limit(name, expected + unit * fit.value, abs(unit) * fit.error, expected, abs(unit), power, other)
 
 
 def _blame(one: Limit) -> str:
     """What is wrong with a limit."""
-    if one.is_explained:
+    if one.is_other:
         relative = f", off by {100 * (one.value / one.expected - 1):.2g} %" if one.expected else ""
         return f"{one}{relative}"
     return f"k is too large to tell the limit: {one}; take smaller k"
