@@ -15,13 +15,13 @@ from ..flows.base import allowed, check_flow, numeric
 from ..flows.catalogue import nearest
 from ..modes.accuracy import DEGREES, TOLERANCE, check_accuracy
 from ..output.columns import explained
-from ..output.text import check_writable, render, whole_file, write
+from ..output.text import check_writable, render, whole_file
 from ..status import is_interrupted, is_settled
 from .names import FLOW, flag_of
 from .plotting import look_of, plot_options
 from .progress import Bar
 from .specs import parse_spec
-from .streams import output_closed, say, terminal_width
+from .streams import output_closed, put, say, terminal_width
 from .verbs import VERBS
 from .verbs.once import NUMBER
 
@@ -216,7 +216,7 @@ def report(arguments: argparse.Namespace, compute: Callable[..., Any]) -> int:
     try:
         _deliver(arguments.output, content)
     except ParameterError:  # the results then go where they can be read, as text
-        write(render("csv", header, rows) if form == "netcdf" else content.decode(), None)
+        put(render("csv", header, rows) if form == "netcdf" else content.decode())
         raise
     if arguments.plot is not None:
         from ..output.plots import draw  # matplotlib takes longer to import than most results to compute
@@ -270,7 +270,7 @@ def form_of(arguments: argparse.Namespace) -> str:
 def _deliver(output: str | None, content: bytes) -> None:
     """Write the result to the file of -o, or to standard output."""
     if output is None:
-        write(content.decode(), None)
+        put(content.decode())
         return
     with whole_file(output, "-o") as temporary:
         temporary.write_bytes(content)

@@ -4,7 +4,6 @@ This is the one control of steps there is: for modes along k, for crests, zeros 
 and for solutions of boundary-value problems. What lies on the way, and by what a step is judged, those say who walk.
 """
 
-
 from dataclasses import dataclass
 from math import copysign, exp, log
 from typing import Any, ClassVar

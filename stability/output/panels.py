@@ -17,7 +17,6 @@ from .spacing import is_logarithmic, spans_decades
 LINE, MARKED, POINTS = "line", "marked", "points"  # a line, one with dots, dots alone
 OTHERS, DOTS, LEVEL, THIN = "others", "dots", "level", "thin"  # what goes with a curve, in its colour
 BARS = "bars"  # horizontal, `y` naming them
-OWN = (LINE, MARKED, POINTS, BARS)  # kinds that take a colour of their own
 
 
 @dataclass(frozen=True)

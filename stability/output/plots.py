@@ -166,7 +166,6 @@ def _legends(figure: Any, axes: list[Any], panels: list[Any]) -> None:
     found = [axis.get_legend_handles_labels() for axis in axes]
     grids = [panel for panel in panels if isinstance(panel, Grid)]
     if grids:
-
         extra = legend_of(grids[0])
         handles, labels = [*found[0][0], *extra[0]], [*found[0][1], *extra[1]]
     elif len(axes) > 1 and all(labels == found[0][1] for _, labels in found) and len(found[0][1]) > 1:

@@ -4,7 +4,6 @@ import csv
 import io
 import json
 import os
-import sys
 import tempfile
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
@@ -212,12 +211,3 @@ def _umask() -> int:
     mask = os.umask(0)
     os.umask(mask)
     return mask
-
-
-def write(text: str, temporary: Path | None) -> None:
-    """Write text to the temporary file of -o, or to standard output."""
-    if temporary is None:
-        sys.stdout.write(text)
-        sys.stdout.flush()
-    else:
-        temporary.write_text(text, encoding="utf-8")
