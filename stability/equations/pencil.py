@@ -20,7 +20,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..numerics import chebyshev
-from ..numerics.bordered import Bordered, Factors, ManyFactors, Places
+from ..numerics.blocks import placed
+from ..numerics.bordered import Bordered, Factors, ManyFactors
 from ..numerics.stack import Lines, Stack
 from .layer import FIELDS
 
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from .system import Structure, System
     from .table import Table
 
+_ENDS = 4  # terms of a series, twice so many before them: they tell how fast it falls
 _LAST = 4  # rows of an equation whose left vector bounds that of the tail: the last two alone feel the truncation
 
 
@@ -56,9 +58,10 @@ class Layout:
     """Where unknowns and entries of the matrices of one degree lie, from a `table` that reaches it.
 
     Attributes: `size` rows and columns, of which `interior` are banded; `columns` and `rows` map unknowns and equations
-    to index arrays; `last` (equations, 4) are the last rows of each equation. `stack`, `tail`, `b` and `places` tell
-    where the entries of A - rate B, of the rows beyond, of B and of the bordered band matrix lie; `inside`, `beyond`
-    and `carrying`, which entries of the table those are.
+    to index arrays; `last` (equations, 4) are the last rows of each equation, `ends` (3, fields, 4) the last columns of
+    each field behind those before them. `stack`, `tail`, `b` and `places` tell where the entries of A - rate B, of the
+    rows beyond, of B and of the bordered matrix lie; `inside`, `beyond` and `carrying`, which entries of the table
+    those are.
     """
 
     def __init__(self, table: "Table", degree: int) -> None:
@@ -73,7 +76,7 @@ class Layout:
         carries = here & (part >= self.structure.first_b)
         self.inside, self.beyond, self.carrying = kept[here], kept[~here], kept[carries]
         self.stack = Lines(part[here], row[here], column[here], count, (self.size, self.size))
-        self.places = Places(part[here], row[here], column[here], count, self.interior, self.size - self.interior)
+        self.places = placed(part[here], row[here], column[here], count, self.interior, self.size - self.interior)
         self.tail = Lines(part[~here], row[~here] - self.size, column[~here], count,
                           (table.tail * len(self.last), self.size))
         self.b = Lines(part[carries], row[carries], column[carries], count, (self.size, self.size))
@@ -114,6 +117,8 @@ class Layout:
         self.rows = {equation.name: rows[i, : self.degree + equation.extra]
                      for i, equation in enumerate(equations)}
         self.rows["conditions"] = rows[len(extra):, 0]
+        few = min(_ENDS, width // 3)
+        self.ends = columns[:structure.fields, width - 3 * few:].reshape(-1, 3, few).swapaxes(0, 1)
         self.last = np.array([self.rows[equation.name][-_LAST:] for equation in equations])
         for i, count in enumerate(self.degree + extra):
             rows[i, count: count + table.tail] = self.size + i * table.tail + np.arange(table.tail)

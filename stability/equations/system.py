@@ -6,7 +6,7 @@ multiplies the unknown (or its s-derivative, marked ') and a product of scalar s
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from .layer import Layer, Profile
 
 _PROPORTIONAL = 1e-12  # relative difference of ratios that is rounding: two conditions that say the same
+_FEW = 8  # terms of a series up to which each of them counts; longer ones have a length that many have
+_LENGTHS, _STEP = (12, 16, 24, 32), 4  # those, and how far apart they are beyond
 _EQUATIONS = ("shear rate", "continuity", "momentum along", "momentum across")
 
 
@@ -39,7 +41,7 @@ class Equation:
 
 @dataclass(frozen=True)
 class EquationRow:
-    """An equation or a condition, whatever its coefficients: terms (unknown, monomial, indices of what is not 0)."""
+    """An equation or a condition, whatever its coefficients: terms (unknown, monomial, indices that may not be 0)."""
 
     name: str
     extra: int
@@ -59,6 +61,13 @@ class Structure:
     equations: int
     longest: int
     rows: tuple
+
+    def __hash__(self) -> int:
+        return self._hash
+
+    @cached_property
+    def _hash(self) -> int:
+        return hash((self.unknowns, self.rows))
 
     @cached_property
     def parts(self) -> tuple[Any, ...]:
@@ -105,16 +114,16 @@ class System:
     def structure(self) -> "Structure":
         """The `Structure` of the equations."""
         rows = *((one.name, one.extra, one.terms) for one in self.equations), *(("", 0, one) for one in self.conditions)
-        return Structure((*self.fields, *self.surfaces), len(self.fields), len(self.equations), self.longest, tuple(
-            EquationRow(name, extra, tuple((unknown, monomial, _support(series))
-                                           for unknown, monomial, series in terms))
-            for name, extra, terms in rows))
+        return _the_one(Structure((*self.fields, *self.surfaces), len(self.fields), len(self.equations), self.longest,
+                                  tuple(EquationRow(name, extra, tuple((unknown, monomial, _support(series))
+                                                                       for unknown, monomial, series in terms))
+                                        for name, extra, terms in rows)))
 
-    @property
+    @cached_property
     def coefficients(self) -> np.ndarray:
-        """All Chebyshev coefficients that are not 0, term by term in the order of the structure."""
+        """All Chebyshev coefficients that may not be 0, term by term in the order of the structure."""
         rows = *(equation.terms for equation in self.equations), *self.conditions
-        return np.concatenate([series[series != 0] for terms in rows for *_, series in terms])
+        return np.concatenate([series[_places(series)] for terms in rows for *_, series in terms])
 
     def __eq__(self, other: Any) -> Any:
         return _same(self.equations, other.equations) and _same(self.conditions, other.conditions)
@@ -139,9 +148,9 @@ class System:
             return [forms[equation].terms[product] for equation, product in keys]
 
         fit = resolved(flow, layers, index, coefficients)
-        cuts = fit.cut.tolist()
+        cuts, longest = fit.cut.tolist(), max(map(len, fit.series))
         for equation, name in enumerate(_EQUATIONS):
-            here = [(*self._split(product), series, cut)
+            here = [(*self._split(product), _rounded(series, longest), cut)
                     for (index, product), series, cut in zip(keys, fit.series, cuts, strict=True)
                     if index == equation and (len(series) > 1 or series[0])]
             yield Equation(f"{layer.name}: {name}", tuple(term[:3] for term in here),
@@ -178,8 +187,36 @@ def _edge(layer: "Layer", end: int) -> Any:
     return SimpleNamespace(**{field: variable(f"{layer.name}.{field}@{end}") for field in FIELDS})
 
 
-def _support(series: np.ndarray) -> tuple[Any, ...]:
-    return tuple(series.nonzero()[0].tolist())
+@lru_cache(maxsize=64)
+def _the_one(structure: Structure) -> Structure:
+    """Of equal structures always the same object: what knows its hash and is compared by identity is found at once."""
+    return structure
+
+
+def _rounded(series: np.ndarray, longest: int) -> np.ndarray:
+    """The series, with zeros up to a length that others share: that of the longest of a layer, where that is short.
+
+    Flows whose series differ by a few terms then have one structure.
+    """
+    length = longest if longest <= _LENGTHS[-1] else len(series)
+    if len(series) <= _FEW:
+        return series
+    length = next((most for most in _LENGTHS if length <= most), -(-length // _STEP) * _STEP)
+    return np.concatenate((series, np.zeros(length - len(series))))
+
+
+def _places(series: np.ndarray) -> Any:
+    """Where the terms of a series are that may not be 0: of a long one all, or all of one parity."""
+    if len(series) <= _FEW:
+        return series.nonzero()[0]
+    even, odd = series[::2].any(), series[1::2].any()
+    return slice(int(not even), len(series), 1 if even and odd else 2)
+
+
+def _support(series: np.ndarray) -> "tuple[int, ...] | range":
+    """The indices of these terms."""
+    places = _places(series)
+    return range(*places.indices(len(series))) if isinstance(places, slice) else tuple(places.tolist())
 
 
 def _series(number: complex) -> np.ndarray:
@@ -191,6 +228,7 @@ def _check_conditions(flow: Any, given: tuple[Any, ...]) -> None:
     """Conditions are different forms with finite coefficients; their numbers in messages count from 1."""
     if not isinstance(given, tuple | list):
         raise ParameterError(f"{flow.name}: conditions(edges, names) must return a tuple (got {shown(given)})")
+    seen: list[dict[tuple[Any, ...], Any]] = []
     for number, form in enumerate(given, 1):
         if not isinstance(form, Form) or not any(form.terms.values()):
             raise ParameterError(f"{flow.name}: condition {number} has no unknown: it is to be a sum such as "
@@ -199,15 +237,14 @@ def _check_conditions(flow: Any, given: tuple[Any, ...]) -> None:
             if np.shape(coefficient) or not np.isfinite(coefficient):
                 raise ParameterError(f"{flow.name}: condition {number}: the coefficient of {'*'.join(names)} must be a "
                                      f"finite number (got {shown(coefficient)})")
-        for other in range(1, number):
-            if _proportional(given[other - 1].terms, form.terms):
+        terms = {names: value for names, value in form.terms.items() if value}
+        for other, before in enumerate(seen, 1):
+            if before.keys() == terms.keys() and _proportional(before, terms):
                 raise ParameterError(f"{flow.name}: conditions {other} and {number} say the same")
+        seen.append(terms)
 
 
 def _proportional(one: dict[tuple[Any, ...], Any], other: dict[tuple[Any, ...], Any]) -> bool:
-    one, other = ({names: value for names, value in terms.items() if value} for terms in (one, other))
-    if one.keys() != other.keys():
-        return False
     ratios = [complex(other[names] / value) for names, value in one.items()]
     return all(abs(ratio - ratios[0]) <= _PROPORTIONAL * abs(ratios[0]) for ratio in ratios)
 

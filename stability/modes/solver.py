@@ -1,6 +1,7 @@
 """The solver of one flow: refines a mode at the degree it needs, with error bars."""
 
 from functools import cached_property, lru_cache
+from math import log
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 
 _FAR_BELOW = 1e-15  # relative truncation error that is aimed at with the default tolerance
 _OVERSOLVED = 1e-7  # truncation over rounding below which one rung less of the degree suffices as well
+_HARDLY = 0.9  # of the terms by which a series is to be longer, as far as that is foreseen: too many cost more
 _VECTOR, _ROUGHEST = 0.01, 1e-6  # error of vectors without bars, in units of the tolerance; the largest
 _GLANCE = 0.3  # relative distance of a rate from a long-wave limit at which a mode may be meant
 _SCATTER = 40.0  # error of a slope from vectors right to rounding, in units of error times 1 or 1/k (measured)
@@ -64,7 +66,7 @@ class Assembly:
         """The pencil of this degree with coefficients brought to similar sizes: of it holds what depends on the
         structure alone, which enormous ratios of numbers would hide."""
         coefficients, layout = self.system.coefficients, self._layout(degree)
-        sizes = np.abs(coefficients)
+        sizes = np.where(coefficients, np.abs(coefficients), np.abs(coefficients).max())
         decades = np.log10(sizes.max() / sizes.min())
         values = layout.table.values(coefficients * sizes ** (min(1.0, _DECADES / max(decades, _DECADES)) - 1))
         return Pencil(layout, values, self.system)
@@ -186,25 +188,37 @@ class Solver:
         likely = self.foresight and self.foresight.at(k, rate, *((_GLANCE,) if glance else ()))
         if likely and (glance or self.fits(likely)):
             return likely
-        start = self.degrees.index(degree or (vectors[0] if vectors else self.degrees[min(2, len(self.degrees) - 1)]))
-        for degree in self.degrees[start:]:
+        degree = degree or (vectors[0] if vectors else self.degrees[min(2, len(self.degrees) - 1)])
+        while True:
             pencil = self.pencil(degree)
             x, y = transfer(self, vectors, degree) if vectors else (None, None)
             eigen = refine(pencil, self.weights(k), rate, x, y, self.bars, self.vectors)
             mode = self._mode(k, degree, eigen)
-            if glance or self.fits(mode):
-                break
-            rate, vectors = eigen.rate, (degree, eigen.x, eigen.y)
-        return mode
+            if glance or degree == self.degrees[-1] or self.fits(mode):
+                return mode
+            rate, vectors, degree = eigen.rate, (degree, eigen.x, eigen.y), self.likely_degree(mode)
 
     def refined(self, mode: Mode) -> Mode:
         """Return a mode of a rougher solver as this one has it."""
         return self.solve(mode.k, mode.rate, (mode.degree, mode.x, mode.y), self.likely_degree(mode))
 
     def likely_degree(self, mode: Mode) -> int:
-        """The degree to try first where a rougher solver has found this mode: a higher one where its own is too low."""
-        rung = self.degrees.index(mode.degree)
-        return self.degrees[min(rung + (not self.fits(mode)), len(self.degrees) - 1)]
+        """The degree to try first where this solver, or a rougher one, has found a mode: a higher one if its own is too
+        low, the last at which its error would hardly be small enough if its series fall on as they do."""
+        if self.fits(mode):
+            return mode.degree
+        rung = min(self.degrees.index(mode.degree) + 1, len(self.degrees) - 1)
+        layout = self.pencil(mode.degree).layout
+        shares = np.abs(mode.x[layout.ends]).sum(axis=2) * np.abs(mode.y[layout.last]).max(axis=1)  # of the truncation
+        sizes = np.log(shares.sum(axis=1))
+        fall, faster = sizes[1] - sizes[2], max(2 * sizes[1] - sizes[0] - sizes[2], 0.0)
+        if fall > 0:  # from here on by fall + faster, fall + 2 faster ...
+            excess = log(mode.truncation / max(mode.rounding, self.truncation * abs(mode.sigma)))
+            fall += faster / 2
+            steps = 2 * excess / (fall + (fall**2 + 2 * faster * excess) ** 0.5)
+            enough = mode.degree + _HARDLY * layout.ends.shape[2] * steps
+            rung = max(rung, int(np.searchsorted(self.degrees, enough, side="right")) - 1)
+        return self.degrees[rung]
 
     def solve_many(self, wavenumbers: list[float], rates: np.ndarray | None, vectors: list[np.ndarray],
                    degree: int) -> list[Any]:

@@ -5,6 +5,7 @@ d phi_j / dx = T_{j-1}. In this basis a first-order equation f' - a f = 0 become
 equation of the second kind: its matrix is banded where a is a polynomial, and well conditioned.
 """
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -84,7 +85,8 @@ def entries(series: list[np.ndarray], slopes: list[bool], count: int, degree: in
     return tuple(np.concatenate(arrays) for arrays in zip(*found, strict=True))
 
 
-def cells(support: tuple[Any, ...], slope: bool, count: int, degree: int) -> tuple[np.ndarray, ...]:
+@lru_cache(maxsize=32)
+def cells(support: Sequence[int], slope: bool, count: int, degree: int) -> tuple[np.ndarray, ...]:
     """Where the matrix of a series times f, or df/ds with `slope`, has entries, and how those follow from the series.
 
     `support` are the indices of its T-coefficients that are not 0. Returns row and column (cells,) and, for each of a
