@@ -74,14 +74,13 @@ class Layout:
                              columns[table.unknown[kept], table.column[kept]])
         here, count = row < self.size, len(self.structure.parts)
         carries = here & (part >= self.structure.first_b)
-        self.inside, self.beyond, self.carrying = kept[here], kept[~here], kept[carries]
+        self.inside, self.beyond, self.carrying = (kept[some].astype(np.int32) for some in (here, ~here, carries))
         self.stack = Lines(part[here], row[here], column[here], count, (self.size, self.size))
         self.places = placed(part[here], row[here], column[here], count, self.interior, self.size - self.interior)
         self.tail = Lines(part[~here], row[~here] - self.size, column[~here], count,
                           (table.tail * len(self.last), self.size))
         self.b = Lines(part[carries], row[carries], column[carries], count, (self.size, self.size))
         self.rate_rows = np.unique(row[carries])
-        self.entries = part[here], row[here], column[here]
 
     def common(self, other: "Layout") -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
         """Which columns, and which rows, it has in common with another degree: for each, where here and where there."""
@@ -204,9 +203,5 @@ class Pencil:
 
     def pair(self, weights: Any) -> Any:
         """Return A and B in full, each (size, size)."""
-        part, row, column = self.layout.entries
-        value = self._values[self.layout.inside] * weights.value[part]
-        full = np.zeros((2, self.size, self.size), value.dtype)
-        carries = part >= self.first_b
-        np.add.at(full, (carries.astype(int), row, column), np.where(carries, -value, value))
-        return full[0], full[1]
+        carries = np.arange(len(self.parts)) >= self.first_b
+        return self.stack.full(weights.value * ~carries), -self.stack.full(weights.value * carries)

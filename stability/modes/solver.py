@@ -26,16 +26,15 @@ if TYPE_CHECKING:
 
 _FAR_BELOW = 1e-15  # relative truncation error that is aimed at with the default tolerance
 _OVERSOLVED = 1e-7  # truncation over rounding below which one rung less of the degree suffices as well
-_HARDLY = 0.9  # of the terms by which a series is to be longer, as far as that is foreseen: too many cost more
 _VECTOR, _ROUGHEST = 0.01, 1e-6  # error of vectors without bars, in units of the tolerance; the largest
 _GLANCE = 0.3  # relative distance of a rate from a long-wave limit at which a mode may be meant
 _SCATTER = 40.0  # error of a slope from vectors right to rounding, in units of error times 1 or 1/k (measured)
 _LEAST = 32  # degree of the smallest table of entries
 _DECADES = 3.0  # that coefficients span at most where only structure counts: eigenvalues stand out from rounding
-_SMALL = 1024  # degree times terms of the longest series up to which layouts, some megabytes each, are kept ...
+_SMALL = 2048  # degree times terms of the longest series up to which layouts, some megabytes each, are kept ...
 _LAYOUTS, _TABLES = 48, 8  # ... for other flows, and how many
 _TOGETHER = 64, 4096  # points refined at once, and those times the degree: bounds the memory
-_EPS = np.finfo(float).eps
+_EPS, _TINY = np.finfo(float).eps, np.finfo(float).tiny
 _REMEMBERED = 10_000  # wavenumbers whose functions and weights are kept
 _ROUNDING = 4.0  # standard deviations of the accumulated rounding that the error bar spans
 
@@ -204,19 +203,19 @@ class Solver:
 
     def likely_degree(self, mode: Mode) -> int:
         """The degree to try first where this solver, or a rougher one, has found a mode: a higher one if its own is too
-        low, the last at which its error would hardly be small enough if its series fall on as they do."""
+        low, the last that is no larger than where its error is small enough if its series fall on as they do."""
         if self.fits(mode):
             return mode.degree
         rung = min(self.degrees.index(mode.degree) + 1, len(self.degrees) - 1)
         layout = self.pencil(mode.degree).layout
         shares = np.abs(mode.x[layout.ends]).sum(axis=2) * np.abs(mode.y[layout.last]).max(axis=1)  # of the truncation
         sizes = np.log(shares.sum(axis=1))
-        fall, faster = sizes[1] - sizes[2], max(2 * sizes[1] - sizes[0] - sizes[2], 0.0)
+        fall, faster = sizes[1] - sizes[2], max(2 * sizes[1] - sizes[0] - sizes[2], 0.0) / 2  # half: falls are uneven
         if fall > 0:  # from here on by fall + faster, fall + 2 faster ...
-            excess = log(mode.truncation / max(mode.rounding, self.truncation * abs(mode.sigma)))
+            excess = log(mode.truncation / max(mode.rounding, self.truncation * abs(mode.sigma), _TINY))
             fall += faster / 2
             steps = 2 * excess / (fall + (fall**2 + 2 * faster * excess) ** 0.5)
-            enough = mode.degree + _HARDLY * layout.ends.shape[2] * steps
+            enough = min(2 * mode.degree, mode.degree + layout.ends.shape[2] * steps)
             rung = max(rung, int(np.searchsorted(self.degrees, enough, side="right")) - 1)
         return self.degrees[rung]
 

@@ -37,10 +37,11 @@ class Places:
         self._starts = np.cumsum([0, *(rows * columns for rows, columns in self._shapes)])
         place = np.where(inside, place, self._starts[1] + row * border + column - interior)
         place[below] = (self._starts[2] + (row - interior) * (interior + border) + column)[below]
-        self._order = np.argsort(place, kind="stable")
+        self._order = np.argsort(place, kind="stable").astype(np.int32)
         place = place[self._order]
         first = np.flatnonzero(np.diff(place, prepend=-1))
-        self._place, self.row, self.column = place[first], row[self._order][first], column[self._order][first]
+        self._place = place[first]
+        self.row, self.column = (index[self._order][first].astype(np.int32) for index in (row, column))
         self._matrix = csr_array((np.zeros(len(place)), part[self._order], np.append(first, len(place))),
                                  (len(first), parts))
 
