@@ -31,7 +31,7 @@ from .law import Law
 
 _REST = 1e-8  # inertial number at which friction of a law with a yield stress is to rise linearly
 _NODES = 96  # of quadrature over a piece
-_TERMS = 20  # of the shear rate of a creeping bed for each piece it is divided into: few long series cost much more
+_TERMS = 25  # of the shear rate of a creeping bed for each piece it is divided into: few long series cost much more
 _SECTIONS, _ROUNDS = 128, 8  # parts of a range of heights one of which has the floor, and how often it is divided
 _DEEPEST = 1e6  # zeta of a floor
 _LINEAR = 1e-3  # disagreement of its slope there with that at twice the number

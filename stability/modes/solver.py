@@ -33,7 +33,7 @@ _LEAST = 32  # degree of the smallest table of entries
 _DECADES = 3.0  # that coefficients span at most where only structure counts: eigenvalues stand out from rounding
 _SMALL = 2048  # degree times terms of the longest series up to which layouts, some megabytes each, are kept ...
 _LAYOUTS, _TABLES = 48, 8  # ... for other flows, and how many
-_TOGETHER = 64, 4096  # points refined at once, and those times the degree: bounds the memory
+_TOGETHER = 64, 600_000  # points refined at once, and the numbers in their matrices: what fits into a cache
 _EPS, _TINY = np.finfo(float).eps, np.finfo(float).tiny
 _REMEMBERED = 10_000  # wavenumbers whose functions and weights are kept
 _ROUNDING = 4.0  # standard deviations of the accumulated rounding that the error bar spans
@@ -227,7 +227,7 @@ class Solver:
         the quotients of the vectors are.
         """
         modes, (x, y) = [], vectors
-        count = max(1, min(_TOGETHER[0], _TOGETHER[1] // degree))
+        count = max(1, min(_TOGETHER[0], _TOGETHER[1] // self.pencil(degree).layout.places.count))
         for first in range(0, len(wavenumbers), count):
             part = slice(first, first + count)
             eigen = refine_many(self.pencil(degree), self.weights(wavenumbers[part]),

@@ -35,6 +35,7 @@ class Places:
         shape, place = self._inner(row, column, inside)
         self._shapes = shape, (interior, border), (border, interior + border)
         self._starts = np.cumsum([0, *(rows * columns for rows, columns in self._shapes)])
+        self.count = int(self._starts[-1])
         place = np.where(inside, place, self._starts[1] + row * border + column - interior)
         place[below] = (self._starts[2] + (row - interior) * (interior + border) + column)[below]
         self._order = np.argsort(place, kind="stable").astype(np.int32)
