@@ -20,9 +20,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..numerics import chebyshev
-from ..numerics.blocks import placed
+from ..numerics.blocks import Blocks, placed
 from ..numerics.bordered import Bordered, Factors, ManyFactors
 from ..numerics.stack import Lines, Stack
+from .condensed import Arrangement, Condensed, condensable
 from .layer import FIELDS
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from .table import Table
 
 _ENDS = 4  # terms of a series, twice so many before them: they tell how fast it falls
+_CONDENSED = 16  # degree from which on it pays to condense full blocks
 _LAST = 4  # rows of an equation whose left vector bounds that of the tail: the last two alone feel the truncation
 
 
@@ -66,7 +68,7 @@ class Layout:
 
     def __init__(self, table: "Table", degree: int) -> None:
         self.table, self.structure, self.degree, self._common = table, table.structure, degree, {}
-        columns, rows = self._place(table)
+        columns, rows = self._maps = self._place(table)
         reach = np.array([degree + row.extra + table.tail if number < table.structure.equations else 1
                           for number, row in enumerate(table.structure.rows)])
         kept = np.flatnonzero((table.column <= degree) & (table.row < reach[table.equation]))
@@ -81,6 +83,18 @@ class Layout:
                           (table.tail * len(self.last), self.size))
         self.b = Lines(part[carries], row[carries], column[carries], count, (self.size, self.size))
         self.rate_rows = np.unique(row[carries])
+
+    def entries(self) -> tuple[np.ndarray, ...]:
+        """Part, row and column of the entries `inside`."""
+        table, (columns, rows) = self.table, self._maps
+        return (table.part[self.inside], rows[table.equation[self.inside], table.row[self.inside]],
+                columns[table.unknown[self.inside], table.column[self.inside]])
+
+    @cached_property
+    def arrangement(self) -> Arrangement | None:
+        """How its pencils are condensed; None where that does not pay."""
+        worthwhile = isinstance(self.places, Blocks) and self.degree >= _CONDENSED and condensable(self)
+        return Arrangement(self) if worthwhile else None
 
     def common(self, other: "Layout") -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
         """Which columns, and which rows, it has in common with another degree: for each, where here and where there."""
@@ -196,6 +210,11 @@ class Pencil:
         """Return LU factors of A - rate B for weights (parts,) of the parts, or (parts, points) and rates (points,)."""
         kind = ManyFactors if np.ndim(rate) else Factors
         return kind(self._bordered, weights * self.powers(rate))
+
+    @cached_property
+    def condensed(self) -> Condensed | None:
+        """The same eigenproblem with half the unknowns, where that pays."""
+        return Condensed(self, self._values[self.layout.inside]) if self.layout.arrangement else None
 
     @cached_property
     def _bordered(self) -> Bordered:

@@ -162,13 +162,17 @@ class System:
         return tuple((*self._split(names), _series(number)) for names, number in form.terms.items() if number)
 
     def _split(self, names: tuple[Any, ...]) -> tuple[Any, ...]:
-        """The one unknown among the names of a product, and the monomial of the others."""
-        all_ = self.fields + self.surfaces
-        unknowns = [name for name in names if name.rstrip("'").partition("@")[0] in all_]
-        if len(unknowns) != 1 or names.count("rate") > 1:
-            raise ParameterError("equations and conditions must be linear in the unknowns and in the rate: got "
-                                 f"{'*'.join(names) or 'a constant'}")
-        return unknowns[0], tuple(name for name in names if name != unknowns[0])
+        return _split(names, self.fields + self.surfaces)
+
+
+@lru_cache(maxsize=4096)
+def _split(names: tuple[str, ...], known: tuple[str, ...]) -> tuple[str, tuple[str, ...]]:
+    """The one unknown among the names of a product, and the monomial of the others."""
+    unknowns = [name for name in names if name.rstrip("'").partition("@")[0] in known]
+    if len(unknowns) != 1 or names.count("rate") > 1:
+        raise ParameterError("equations and conditions must be linear in the unknowns and in the rate: got "
+                             f"{'*'.join(names) or 'a constant'}")
+    return unknowns[0], tuple(name for name in names if name != unknowns[0])
 
 
 def _same(one: Any, other: Any) -> bool:
@@ -198,18 +202,19 @@ def _rounded(series: np.ndarray, longest: int) -> np.ndarray:
 
     Flows whose series differ by a few terms then have one structure.
     """
-    length = longest if longest <= _LENGTHS[-1] else len(series)
     if len(series) <= _FEW:
         return series
-    length = next((most for most in _LENGTHS if length <= most), -(-length // _STEP) * _STEP)
-    return np.concatenate((series, np.zeros(length - len(series))))
+    length = longest if longest <= _LENGTHS[-1] else len(series)
+    rounded = np.zeros(next((most for most in _LENGTHS if length <= most), -(-length // _STEP) * _STEP), series.dtype)
+    rounded[:len(series)] = series
+    return rounded
 
 
 def _places(series: np.ndarray) -> Any:
     """Where the terms of a series are that may not be 0: of a long one all, or all of one parity."""
     if len(series) <= _FEW:
         return series.nonzero()[0]
-    even, odd = series[::2].any(), series[1::2].any()
+    even, odd = series[0] or series[::2].any(), series[1] or series[1::2].any()
     return slice(int(not even), len(series), 1 if even and odd else 2)
 
 

@@ -31,7 +31,7 @@ from .law import Law
 
 _REST = 1e-8  # inertial number at which friction of a law with a yield stress is to rise linearly
 _NODES = 96  # of quadrature over a piece
-_TERMS = 25  # of the shear rate of a creeping bed for each piece it is divided into: few long series cost much more
+_TERMS = 26  # of the velocity over part of a creeping bed for each piece it is divided into: long series cost more
 _SECTIONS, _ROUNDS = 128, 8  # parts of a range of heights one of which has the floor, and how often it is divided
 _DEEPEST = 1e6  # zeta of a floor
 _LINEAR = 1e-3  # disagreement of its slope there with that at twice the number
@@ -98,16 +98,22 @@ class Creeping:
 
 @dataclass(frozen=True)
 class Piece:
-    """Part of the bed between two heights at which the law is smooth, with its velocity."""
+    """Part of the bed between two heights at which the law is smooth, or a piece of such a part, with its velocity."""
 
     heights: Sinking | Creeping
     singular: bool  # whether its lower edge is the yield surface
-    low: float  # velocity at the lower edge
-    series: Any  # of the velocity above it
+    low: float  # velocity at the lower edge of the part
+    series: Any  # of the velocity above it, over the whole part
+    first: float  # s in the part of the edges of the piece
+    last: float
+
+    def velocity(self, s: Any) -> Any:
+        """U at the points s."""
+        return self.low + C.chebval(2 * (self.first + (self.last - self.first) * s) - 1, self.series)
 
     @property
     def top(self) -> float:
-        return self.low + float(C.chebval(1.0, self.series))
+        return float(self.velocity(1.0))
 
 
 @lru_cache(maxsize=512)
@@ -118,7 +124,10 @@ def pieces(law: Law, shields: float, creep: float) -> tuple[Piece, ...]:
     parts: Any = _yielding(law, tau, shields) if law.yields else _creeping(law, tau, creep)
     for heights, series in zip(parts, _velocities(law, tau, parts), strict=True):
         low = found[-1].top if found else 0.0
-        found.append(Piece(heights, law.yields and not found, low, series))
+        count = 1 if law.yields else ceil(len(series) / _TERMS)
+        for number, piece in enumerate(heights.divided(count) if count > 1 else [heights]):
+            ends = number / count, (number + 1) / count
+            found.append(Piece(piece, law.yields and not found, low, series, *ends))
     return tuple(found)
 
 
@@ -149,28 +158,22 @@ def _creeping(law: Any, tau: Any, creep: Any) -> Any:
         low, high = grid[max(last, 0): last + 2]
     bottom = float(np.exp(high))
     edges = [bottom, *sorted(one for one in law.breaks if bottom < one < surface), surface]
-    parts = [Creeping(slow, fast) for slow, fast in pairwise(edges)]
-    return [piece for part, one in zip(parts, _shear(law, tau, parts), strict=True)
-            for piece in part.divided(ceil(len(one) / _TERMS))]
+    return [Creeping(slow, fast) for slow, fast in pairwise(edges)]
 
 
 def _velocities(law: Law, tau: float, parts: "list[Sinking] | list[Creeping]") -> list[np.ndarray]:
     """T-coefficients of the velocities over those at the lower edges: antiderivatives of the series of I zeta dz/ds."""
-    return [C.chebint(series, lbnd=-1) / 2 for series in _shear(law, tau, parts)]
-
-
-def _shear(law: Law, tau: float, parts: "list[Sinking] | list[Creeping]") -> tuple[np.ndarray, ...]:
-    """T-coefficients of dU/ds = 2 I zeta^2 (-dzeta/ds)."""
     def slopes(s: np.ndarray) -> np.ndarray:
         states = (heights.at(law, tau, s) for heights in parts)
         return np.array([2 * stretch * zeta**2 * inertial + 0 * s for zeta, inertial, stretch, _ in states])
 
     try:
-        return fit(slopes).series
+        found = fit(slopes)
     except Rough as rough:
         raise ParameterError(f"law {law.name}: the shear rate of the bed is not smooth near s = {rough.s:.4g}: "
                              "friction must rise smoothly with I, linearly from rest, and the stress stay clear of its "
                              "largest value") from None
+    return [C.chebint(series, lbnd=-1) / 2 for series in found.series]
 
 
 def profile(law: Law, tau: float, piece: Piece, inertia: float = 1.0) -> Callable[[Any], Profile]:
@@ -186,7 +189,7 @@ def profile(law: Law, tau: float, piece: Piece, inertia: float = 1.0) -> Callabl
         return Profile(
             dz=2 * stretch * zeta,
             rho=inertia,
-            U=piece.low + C.chebval(2 * s - 1, piece.series),
+            U=piece.velocity(s),
             dU=shear_rate,
             eta=eta,
             beta=slope * zeta,

@@ -11,7 +11,8 @@ from scipy.linalg import lapack
 
 from .bordered import Places, phase
 
-_FULL = 1.25  # width of a band over the size of the largest block above which blocks are faster (measured)
+_FULL = 1.25, 0.5  # width of a band over the size of the largest block above which blocks are faster (measured) ...
+_WIDE, _LARGEST = 128, 1024  # the former for any band, the latter for one so wide; size of blocks up to which
 _BLOCK = {"f": (lapack.dgetrf, lapack.dgetrs), "c": (lapack.zgetrf, lapack.zgetrs)}
 
 
@@ -19,9 +20,9 @@ def placed(part: np.ndarray, row: np.ndarray, column: np.ndarray, parts: int, in
     """Return the `Places` of these entries in a band, or in blocks where those are full or nearly so."""
     band = Places(part, row, column, parts, interior, border)
     edges = _edges(row, column, interior)
-    if interior and band.lower + band.upper + 1 > _FULL * np.diff(edges).max():
-        return Blocks(part, row, column, parts, interior, border)
-    return band
+    width, largest = band.lower + band.upper + 1, np.diff(edges).max(initial=0)
+    full = 0 < largest <= _LARGEST and width > _FULL[width > _WIDE] * largest
+    return Blocks(part, row, column, parts, interior, border) if full else band
 
 
 def _edges(row: np.ndarray, column: np.ndarray, interior: int) -> np.ndarray:

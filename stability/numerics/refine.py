@@ -31,6 +31,7 @@ _FACTORISATIONS = 12
 _ROUNDS = 3  # of factorisations at many points
 _CORRECTIONS = 12
 VECTOR = 1e-9  # error of a vector, and so of the slope, that is accepted
+_ALONE = 28  # degree from which on a single eigenvalue is sought in what is condensed of a pencil: that takes a while
 _OFFSET = 1e-3  # of a factorisation for corrections from its rate: it must not be singular
 
 
@@ -70,16 +71,17 @@ def refine(pencil: Any, weights: Any, rate: complex, x: np.ndarray | None = None
     wrong by `accuracy` at most, the rate by its square: less is right for a rough look.
     """
     x, y = (_start(pencil.size) if vector is None else vector for vector in (x, y))
-    y, b = y.conj(), pencil.b_products(weights.value)  # y^H from here on
+    inner, own, x, y = _inside(pencil.condensed if pencil.degree >= _ALONE else None, pencil, weights, x, y.conj())
+    b = inner.b_products(own.value)
     for _ in range(_FACTORISATIONS):
         if pencil.real and not np.imag(rate):
             rate, x, y = np.real(rate), x.real, y.real
-        factors = _factors(pencil, weights.value, rate)
+        factors = _factors(inner, own.value, rate)
         x, y, steps, settled = _iterate(b, factors, x, y, accuracy)
         if settled:
-            found = _quotient(pencil, weights, x, y, steps, settled, bars)
+            found = _quotient(pencil, weights, x, y, steps, settled, bars, (inner, own))
             return _twice(pencil, weights, found, bars) if factors.uneven else found
-        rate = _rate(pencil, weights.value * pencil.stack.brackets(y, pencil.stack.times(x)))
+        rate = _rate(inner, own.value * inner.stack.brackets(y, inner.stack.times(x)))
         if not np.isfinite(rate):
             break
     raise ModeLost(f"inverse iteration near rate {complex(rate):.6g} did not settle")
@@ -92,27 +94,34 @@ def refine_many(pencil: Any, weights: Any, rate: np.ndarray | None, x: np.ndarra
     Without `bars` the rounding is left at 0: a rough look does not need it. Without a rate the quotient of the vectors
     is the guess.
     """
-    x, y = x.T, y.conj().T
+    inner, own, x, y = _inside(pencil.condensed, pencil, weights, x.T, y.conj().T)
     if rate is None:
-        rate = _rate(pencil, weights.value * pencil.stack.brackets(y, pencil.stack.times(x)))
+        rate = _rate(inner, own.value * inner.stack.brackets(y, inner.stack.times(x)))
     if pencil.real and not np.any(np.imag(rate)):
         rate, x, y = rate.real, x.real, y.real
     x, y = (np.ascontiguousarray(vectors, np.result_type(vectors, rate)) for vectors in (x, y))
     steps = [(np.zeros_like(vectors), np.zeros(len(rate))) for vectors in (x, y)]
     settled, left = np.zeros(len(rate), bool), np.arange(len(rate))
     for _ in range(_ROUNDS):
-        value = weights.value[:, left]
-        factors = pencil.factors(value, rate[left])
+        value = own.value[:, left]
+        factors = inner.factors(value, rate[left])
         x[:, left], y[:, left], last, settled[left] = _iterate(
-            pencil.b_products(value), factors, x[:, left], y[:, left], accuracy)
+            inner.b_products(value), factors, x[:, left], y[:, left], accuracy)
         for (step, share), (new, part) in zip(steps, last, strict=True):
             step[:, left], share[left] = new, part
         settled[left] &= ~factors.uneven
-        rate = _rate(pencil, weights.value * pencil.stack.brackets(y, pencil.stack.times(x)))
         left = left[~settled[left] & ~factors.uneven]
         if not len(left):
             break
-    return _quotient(pencil, weights, x, y, steps, settled, bars)
+        rate = _rate(inner, own.value * inner.stack.brackets(y, inner.stack.times(x)))
+    return _quotient(pencil, weights, x, y, steps, settled, bars, (inner, own))
+
+
+def _inside(condensed: Any, pencil: Any, weights: Any, x: np.ndarray, y: np.ndarray) -> tuple[Any, ...]:
+    """Where iterations take place, the pencil or what is `condensed` of it, with its weights and the vectors there."""
+    if condensed is None:
+        return pencil, weights, x, y
+    return condensed, condensed.weights(weights), *condensed.restricted(x, y)
 
 
 def _iterate(b: tuple[Callable[..., Any], ...], factors: Any, x: np.ndarray, y: np.ndarray,
@@ -219,13 +228,19 @@ def _rate(pencil: Any, value: np.ndarray) -> Any:
     return -value[: pencil.first_b].sum(axis=0) / value[pencil.first_b:].sum(axis=0)
 
 
-def _quotient(pencil: Any, weights: Any, x: np.ndarray, y: np.ndarray, steps: Any, settled: Any, bars: bool) -> "Eigen":
+def _quotient(pencil: Any, weights: Any, x: np.ndarray, y: np.ndarray, steps: Any, settled: Any, bars: bool,
+              inside: Any = None) -> "Eigen":
     """Rayleigh quotients of the pairs (y^H, x), (size, points) or of one (size,), with slope in k and errors.
 
-    `steps` are the last ones of both vectors, with the shares of them that steps to come would make.
+    `steps` are the last ones of both vectors, with the shares of them that steps to come would make. Both are vectors
+    `inside`: of a pencil and its weights.
     """
-    stack, first = pencil.stack, pencil.first_b
-    products = stack.times(x)
+    stack, first, (inner, own) = pencil.stack, pencil.first_b, inside or (pencil, weights)
+    pair = y, products = y, inner.stack.times(x)
+    if inner is not pencil:
+        rate = _rate(inner, own.value * inner.stack.brackets(*pair))
+        x, y = inner.continued(weights.value * pencil.powers(rate), x, y)
+        products = stack.times(x)
     brackets = stack.brackets(y, products)
     value = weights.value * brackets
     norm = -value[first:].sum(axis=0)  # y B x
@@ -238,8 +253,8 @@ def _quotient(pencil: Any, weights: Any, x: np.ndarray, y: np.ndarray, steps: An
         spread += pencil.cut(weights.value * power, y, x)
     variance, scatter, left = (np.zeros(norm.shape) for _ in range(3))
     if bars:
-        for (_, share), change in zip(steps, _changes(pencil, weights, slope, power, (y, products), (
-                steps[0][0], steps[1][0] / norm)), strict=True):
+        for (_, share), change in zip(steps, _changes(inner, own, slope, inner.powers(rate), (
+                pair[0] / norm, pair[1]), (steps[0][0], steps[1][0] / norm)), strict=True):
             scatter, left = scatter + change, left + share * change
         variance += stack.squares(weights.value * power, y, x)  # of matrix entries
         variance += square(value * power).sum(axis=0) / square(norm)  # of the weights, common to a part
