@@ -31,7 +31,7 @@ from .law import Law
 
 _REST = 1e-8  # inertial number at which friction of a law with a yield stress is to rise linearly
 _NODES = 96  # of quadrature over a piece
-_TERMS = 26  # of the velocity over part of a creeping bed for each piece it is divided into: long series cost more
+_TERMS = 25  # of the velocity over part of a creeping bed for each piece it is divided into: long series cost more
 _SECTIONS, _ROUNDS = 128, 8  # parts of a range of heights one of which has the floor, and how often it is divided
 _DEEPEST = 1e6  # zeta of a floor
 _LINEAR = 1e-3  # disagreement of its slope there with that at twice the number
@@ -102,32 +102,28 @@ class Piece:
 
     heights: Sinking | Creeping
     singular: bool  # whether its lower edge is the yield surface
-    low: float  # velocity at the lower edge of the part
-    series: Any  # of the velocity above it, over the whole part
-    first: float  # s in the part of the edges of the piece
-    last: float
-
-    def velocity(self, s: Any) -> Any:
-        """U at the points s."""
-        return self.low + C.chebval(2 * (self.first + (self.last - self.first) * s) - 1, self.series)
+    low: float  # velocity at the lower edge
+    series: Any  # of the velocity above it
 
     @property
     def top(self) -> float:
-        return float(self.velocity(1.0))
+        return self.low + float(C.chebval(1.0, self.series))
 
 
 @lru_cache(maxsize=512)
 def pieces(law: Law, shields: float, creep: float) -> tuple[Piece, ...]:
     """The parts of the bed from below, with their velocities by quadrature to rounding."""
     tau = law.rest * shields
-    found: list[Piece] = []
     parts: Any = _yielding(law, tau, shields) if law.yields else _creeping(law, tau, creep)
-    for heights, series in zip(parts, _velocities(law, tau, parts), strict=True):
+    velocities = _velocities(law, tau, parts)
+    counts = [1 if law.yields else ceil(len(series) / _TERMS) for series in velocities]
+    if max(counts) > 1:
+        parts = [piece for part, count in zip(parts, counts, strict=True) for piece in part.divided(count)]
+        velocities = _velocities(law, tau, parts)
+    found: list[Piece] = []
+    for heights, series in zip(parts, velocities, strict=True):
         low = found[-1].top if found else 0.0
-        count = 1 if law.yields else ceil(len(series) / _TERMS)
-        for number, piece in enumerate(heights.divided(count) if count > 1 else [heights]):
-            ends = number / count, (number + 1) / count
-            found.append(Piece(piece, law.yields and not found, low, series, *ends))
+        found.append(Piece(heights, law.yields and not found, low, series))
     return tuple(found)
 
 
@@ -189,7 +185,7 @@ def profile(law: Law, tau: float, piece: Piece, inertia: float = 1.0) -> Callabl
         return Profile(
             dz=2 * stretch * zeta,
             rho=inertia,
-            U=piece.velocity(s),
+            U=piece.low + C.chebval(2 * s - 1, piece.series),
             dU=shear_rate,
             eta=eta,
             beta=slope * zeta,
