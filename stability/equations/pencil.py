@@ -214,7 +214,8 @@ class Pencil:
     @cached_property
     def condensed(self) -> Condensed | None:
         """The same eigenproblem with half the unknowns, where that pays."""
-        return Condensed(self, self._values[self.layout.inside]) if self.layout.arrangement else None
+        arrangement = self.layout.arrangement
+        return Condensed(arrangement, self._values[self.layout.inside]) if arrangement else None
 
     @cached_property
     def _bordered(self) -> Bordered:

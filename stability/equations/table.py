@@ -38,8 +38,8 @@ class Table:
                 blocks.append((*np.broadcast_arrays(structure.parts.index(monomial), number,
                                                     structure.unknowns.index(name), *entries), start + index, weight))
                 start += len(support)
-        *places, index, weight = (np.concatenate(arrays, axis=-1) for arrays in zip(*blocks, strict=True))
-        self.part, self.equation, self.unknown, self.row, self.column = (place.astype(np.int32) for place in places)
+        *where, index, weight = (np.concatenate(arrays, axis=-1) for arrays in zip(*blocks, strict=True))
+        self.part, self.equation, self.unknown, self.row, self.column = (one.astype(np.int32) for one in where)
         entry = np.broadcast_to(np.arange(len(self.part)), index.shape)
         used = weight != 0
         self._map = csr_array((weight[used], (entry[used], index[used])), (len(self.part), start))

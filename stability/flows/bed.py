@@ -31,7 +31,7 @@ from .law import Law
 
 _REST = 1e-8  # inertial number at which friction of a law with a yield stress is to rise linearly
 _NODES = 96  # of quadrature over a piece
-_TERMS = 25  # of the velocity over part of a creeping bed for each piece it is divided into: long series cost more
+_TERMS = 25  # of a series over a creeping layer for each piece it is divided into: long ones cost more
 _SECTIONS, _ROUNDS = 128, 8  # parts of a range of heights one of which has the floor, and how often it is divided
 _DEEPEST = 1e6  # zeta of a floor
 _LINEAR = 1e-3  # disagreement of its slope there with that at twice the number
@@ -116,9 +116,9 @@ def pieces(law: Law, shields: float, creep: float) -> tuple[Piece, ...]:
     tau = law.rest * shields
     parts: Any = _yielding(law, tau, shields) if law.yields else _creeping(law, tau, creep)
     velocities = _velocities(law, tau, parts)
-    counts = [1 if law.yields else ceil(len(series) / _TERMS) for series in velocities]
-    if max(counts) > 1:
-        parts = [piece for part, count in zip(parts, counts, strict=True) for piece in part.divided(count)]
+    if not law.yields and max(map(pieces_of, velocities)) > 1:
+        parts = [piece for part, series in zip(parts, velocities, strict=True)
+                 for piece in part.divided(pieces_of(series))]
         velocities = _velocities(law, tau, parts)
     found: list[Piece] = []
     for heights, series in zip(parts, velocities, strict=True):
@@ -163,13 +163,22 @@ def _velocities(law: Law, tau: float, parts: "list[Sinking] | list[Creeping]") -
         states = (heights.at(law, tau, s) for heights in parts)
         return np.array([2 * stretch * zeta**2 * inertial + 0 * s for zeta, inertial, stretch, _ in states])
 
+    return [C.chebint(series, lbnd=-1) / 2 for series in fitted(law, slopes)]
+
+
+def fitted(law: Law, shear: Callable[[np.ndarray], np.ndarray]) -> tuple[np.ndarray, ...]:
+    """The series of the shear rates of layers, `shear(s)` (layers, points)."""
     try:
-        found = fit(slopes)
+        return fit(shear).series
     except Rough as rough:
         raise ParameterError(f"law {law.name}: the shear rate of the bed is not smooth near s = {rough.s:.4g}: "
                              "friction must rise smoothly with I, linearly from rest, and the stress stay clear of its "
                              "largest value") from None
-    return [C.chebint(series, lbnd=-1) / 2 for series in found.series]
+
+
+def pieces_of(series: np.ndarray) -> int:
+    """How many pieces a creeping layer is divided into whose velocity, or shear rate, has this series."""
+    return ceil(len(series) / _TERMS)
 
 
 def profile(law: Law, tau: float, piece: Piece, inertia: float = 1.0) -> Callable[[Any], Profile]:

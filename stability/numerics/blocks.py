@@ -54,10 +54,10 @@ class Blocks(Places):
         return (1, int(ends[-1])), place
 
     def factors(self, band: np.ndarray) -> Any:
-        return FullBlocks(band[0], self._parts)
+        return BlockFactors(band[0], self._parts)
 
 
-class FullBlocks:
+class BlockFactors:
     """LU factors of the blocks; `failed` where a pivot vanishes.
 
     `parts` are the slices of each block: of rows, of its entries, and of the columns of the border that it meets.

@@ -55,7 +55,7 @@ class Places:
 
     def factors(self, band: np.ndarray) -> Any:
         """LU factors of the interior."""
-        return Band(band, self.lower, self.upper)
+        return BandFactors(band, self.lower, self.upper)
 
     def matrix(self, value: np.ndarray) -> Any:
         """The sparse matrix (places, parts) of entries with these values (entries,)."""
@@ -69,7 +69,7 @@ class Places:
                      zip(self._starts[:-1], self._starts[1:], self._shapes, strict=True))
 
 
-class Band:
+class BandFactors:
     """LU factors of a band as `Places` stores it, by columns; `failed` where a pivot vanishes."""
 
     def __init__(self, band: np.ndarray, lower: int, upper: int) -> None:
