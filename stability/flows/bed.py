@@ -17,7 +17,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
-from math import ceil
 from typing import Any
 
 import numpy as np
@@ -31,7 +30,7 @@ from .law import Law
 
 _REST = 1e-8  # inertial number at which friction of a law with a yield stress is to rise linearly
 _NODES = 96  # of quadrature over a piece
-_TERMS = 25  # of a series over a creeping layer for each piece it is divided into: long ones cost more
+_PIECES = 3  # of a creeping layer, at least
 _SECTIONS, _ROUNDS = 128, 8  # parts of a range of heights one of which has the floor, and how often it is divided
 _DEEPEST = 1e6  # zeta of a floor
 _LINEAR = 1e-3  # disagreement of its slope there with that at twice the number
@@ -90,11 +89,6 @@ class Creeping:
         zeta, slope = np.sqrt(tau / mu), law.slope(inertial)
         return zeta, inertial, zeta * slope * inertial * fall / (2 * mu), slope
 
-    def divided(self, count: int) -> "list[Creeping]":
-        """Return pieces over which I rises by the same factor."""
-        edges = [self.low * (self.high / self.low) ** (number / count) for number in range(count)]
-        return [Creeping(low, high) for low, high in pairwise([*edges, self.high])]
-
 
 @dataclass(frozen=True)
 class Piece:
@@ -115,13 +109,8 @@ def pieces(law: Law, shields: float, creep: float) -> tuple[Piece, ...]:
     """The parts of the bed from below, with their velocities by quadrature to rounding."""
     tau = law.rest * shields
     parts: Any = _yielding(law, tau, shields) if law.yields else _creeping(law, tau, creep)
-    velocities = _velocities(law, tau, parts)
-    if not law.yields and max(map(pieces_of, velocities)) > 1:
-        parts = [piece for part, series in zip(parts, velocities, strict=True)
-                 for piece in part.divided(pieces_of(series))]
-        velocities = _velocities(law, tau, parts)
     found: list[Piece] = []
-    for heights, series in zip(parts, velocities, strict=True):
+    for heights, series in zip(parts, _velocities(law, tau, parts), strict=True):
         low = found[-1].top if found else 0.0
         found.append(Piece(heights, law.yields and not found, low, series))
     return tuple(found)
@@ -154,7 +143,19 @@ def _creeping(law: Any, tau: Any, creep: Any) -> Any:
         low, high = grid[max(last, 0): last + 2]
     bottom = float(np.exp(high))
     edges = [bottom, *sorted(one for one in law.breaks if bottom < one < surface), surface]
-    return [Creeping(slow, fast) for slow, fast in pairwise(edges)]
+    return [Creeping(slow, fast) for slow, fast in pairwise(divided(edges))]
+
+
+def divided(edges: list[float]) -> list[float]:
+    """The inertial numbers between which a creeping layer has its pieces, from those between which its law is smooth.
+
+    Rapid flow, the last of those parts, is divided by even factors into what is left of three pieces: one series over
+    all of it would be long. The number of pieces depends on no parameter, so that modes of one flow resemble those of
+    the next.
+    """
+    low, high = edges[-2:]
+    count = max(1, _PIECES + 2 - len(edges))
+    return [*edges[:-2], *(low * (high / low) ** (number / count) for number in range(count)), high]
 
 
 def _velocities(law: Law, tau: float, parts: "list[Sinking] | list[Creeping]") -> list[np.ndarray]:
@@ -163,22 +164,13 @@ def _velocities(law: Law, tau: float, parts: "list[Sinking] | list[Creeping]") -
         states = (heights.at(law, tau, s) for heights in parts)
         return np.array([2 * stretch * zeta**2 * inertial + 0 * s for zeta, inertial, stretch, _ in states])
 
-    return [C.chebint(series, lbnd=-1) / 2 for series in fitted(law, slopes)]
-
-
-def fitted(law: Law, shear: Callable[[np.ndarray], np.ndarray]) -> tuple[np.ndarray, ...]:
-    """The series of the shear rates of layers, `shear(s)` (layers, points)."""
     try:
-        return fit(shear).series
+        found = fit(slopes)
     except Rough as rough:
         raise ParameterError(f"law {law.name}: the shear rate of the bed is not smooth near s = {rough.s:.4g}: "
                              "friction must rise smoothly with I, linearly from rest, and the stress stay clear of its "
                              "largest value") from None
-
-
-def pieces_of(series: np.ndarray) -> int:
-    """How many pieces a creeping layer is divided into whose velocity, or shear rate, has this series."""
-    return ceil(len(series) / _TERMS)
+    return [C.chebint(series, lbnd=-1) / 2 for series in found.series]
 
 
 def profile(law: Law, tau: float, piece: Piece, inertia: float = 1.0) -> Callable[[Any], Profile]:

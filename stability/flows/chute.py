@@ -58,11 +58,6 @@ class CreepingLayer:
         inertial = np.clip(self.fast * np.exp(-fall * s), self.slow, np.nextafter(self.fast, 0))  # this side of breaks
         return self.unit * law.mu(inertial), inertial, self.unit * law.slope(inertial) * inertial * fall
 
-    def divided(self, count: int) -> "list[CreepingLayer]":
-        """Return pieces over which I falls by the same factor."""
-        ends = [self.fast * (self.slow / self.fast) ** (number / count) for number in range(count)]
-        return [CreepingLayer(fast, slow, self.unit) for fast, slow in pairwise([*ends, self.slow])]
-
 
 @lru_cache(maxsize=256)
 def zones(law: Law, plug: float, creep: float) -> "tuple[Zone | CreepingLayer, ...]":
@@ -74,14 +69,8 @@ def zones(law: Law, plug: float, creep: float) -> "tuple[Zone | CreepingLayer, .
         ends = [1.0, *sorted((x for x in inner if plug < x < 1), reverse=True), plug]
         return tuple(Zone(outer, inside, unit, plug) for outer, inside in pairwise(ends))
     core = creep * wall
-    ends = [wall, *sorted((one for one in law.breaks if core < one < wall), reverse=True), core]
-    parts = [CreepingLayer(fast, slow, unit) for fast, slow in pairwise(ends)]
-
-    def shear(s: np.ndarray) -> np.ndarray:
-        return np.array([inertial * stretch for _, inertial, stretch in (part.at(law, s) for part in parts)])
-
-    return tuple(piece for part, series in zip(parts, beds.fitted(law, shear), strict=True)
-                 for piece in part.divided(beds.pieces_of(series)))
+    ends = beds.divided([core, *sorted(one for one in law.breaks if core < one < wall), wall])
+    return tuple(CreepingLayer(fast, slow, unit) for fast, slow in pairwise(ends[::-1]))
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,6 @@
 """The solver of one flow: refines a mode at the degree it needs, with error bars."""
 
+from collections.abc import Callable
 from functools import cached_property, lru_cache
 from math import log
 from typing import TYPE_CHECKING, Any
@@ -18,7 +19,6 @@ from .mode import Mode
 from .response import data_error, spread_of
 
 if TYPE_CHECKING:
-    from ..equations.system import Structure
     from ..equations.table import Table
     from ..flows.base import Flow
     from ..numerics.refine import Eigen
@@ -31,8 +31,8 @@ _GLANCE = 0.3  # relative distance of a rate from a long-wave limit at which a m
 _SCATTER = 40.0  # error of a slope from vectors right to rounding, in units of error times 1 or 1/k (measured)
 _LEAST = 32  # degree of the smallest table of entries
 _DECADES = 3.0  # that coefficients span at most where only structure counts: eigenvalues stand out from rounding
-_SMALL = 2048  # degree times terms of the longest series up to which layouts, some megabytes each, are kept ...
-_LAYOUTS, _TABLES = 48, 8  # ... for other flows, and how many
+_SMALL, _LARGE = 1024, 4096  # degree times terms of the longest series up to which layouts, some megabytes each, ...
+_KEPT = (48, 8), (12, 3)  # ... are kept for other flows, and how many with how many tables: of small and of large ones
 _TOGETHER = 64, 600_000  # points refined at once, and the numbers in their matrices: what fits into a cache
 _EPS, _TINY = np.finfo(float).eps, np.finfo(float).tiny
 _REMEMBERED = 10_000  # wavenumbers whose functions and weights are kept
@@ -72,13 +72,18 @@ class Assembly:
 
     @property
     def small(self) -> bool:
-        """Whether its matrices take a few megabytes at most."""
-        return all(table.degree * table.structure.longest <= _SMALL for table in self._values)
+        """Whether its matrices are not too large to be kept."""
+        return all(table.degree * table.structure.longest <= _LARGE for table in self._values)
+
+    @property
+    def entries(self) -> int:
+        """Entries of its matrices if they were full: what they take in memory goes with that."""
+        return sum(pencil.size**2 for pencil in self._pencils.values())
 
     def _layout(self, degree: int) -> Layout:
         structure, size = self.system.structure, max(_LEAST, 1 << int(degree - 1).bit_length())
-        if size * structure.longest <= _SMALL:
-            return _layout_of(structure, degree, size)
+        if size * structure.longest <= _LARGE:
+            return _LAYOUTS[size * structure.longest > _SMALL](structure, degree, size)
         large = (table for table in self._values if table.degree == size)
         return Layout(next(large, None) or Table(structure, size), degree)
 
@@ -91,14 +96,13 @@ class Assembly:
         return self if other.system == self.system else other
 
 
-@lru_cache(maxsize=_LAYOUTS)
-def _layout_of(structure: "Structure", degree: int, size: int) -> Layout:
-    return Layout(_table_of(structure, size), degree)
+def _layouts(layouts: int, tables: int) -> Callable[..., Layout]:
+    """A function of structure, degree and size of the table that keeps so many layouts and tables."""
+    table_of = lru_cache(maxsize=tables)(Table)
+    return lru_cache(maxsize=layouts)(lambda structure, degree, size: Layout(table_of(structure, size), degree))
 
 
-@lru_cache(maxsize=_TABLES)
-def _table_of(structure: "Structure", degree: int) -> "Table":
-    return Table(structure, degree)
+_LAYOUTS = tuple(_layouts(*kept) for kept in _KEPT)
 
 
 class Solver:

@@ -249,7 +249,7 @@ def _quotient(pencil: Any, weights: Any, x: np.ndarray, y: np.ndarray, steps: An
     y = y / norm
     slope = (weights.slope * brackets * power).sum(axis=0) / norm
     spread = (weights.spread * np.abs(brackets * power)).sum(axis=0) / np.abs(norm)
-    if pencil.cuts:
+    if bars and pencil.cuts:
         spread += pencil.cut(weights.value * power, y, x)
     variance, scatter, left = (np.zeros(norm.shape) for _ in range(3))
     if bars:
