@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from .table import Table
 
 _ENDS = 4  # terms of a series, twice so many before them: they tell how fast it falls
-_CONDENSED = 16  # degree from which on it pays to condense full blocks
+_CONDENSED = 16, 96  # degrees for which it pays to condense full blocks
 _LAST = 4  # rows of an equation whose left vector bounds that of the tail: the last two alone feel the truncation
 
 
@@ -93,8 +93,8 @@ class Layout:
     @cached_property
     def arrangement(self) -> Arrangement | None:
         """How its pencils are condensed; None where that does not pay."""
-        worthwhile = isinstance(self.places, Blocks) and self.degree >= _CONDENSED and condensable(self)
-        return Arrangement(self) if worthwhile else None
+        worthwhile = isinstance(self.places, Blocks) and _CONDENSED[0] <= self.degree <= _CONDENSED[1]
+        return Arrangement(self) if worthwhile and condensable(self) else None
 
     def common(self, other: "Layout") -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
         """Which columns, and which rows, it has in common with another degree: for each, where here and where there."""

@@ -21,8 +21,9 @@ if TYPE_CHECKING:
     from .layer import Layer, Profile
 
 _PROPORTIONAL = 1e-12  # relative difference of ratios that is rounding: two conditions that say the same
-_FEW = 8  # terms of a series up to which each of them counts; longer ones have a length that many have
-_LENGTHS, _STEP = (16, 32), 4  # those, and how far apart they are beyond
+_FEW = 8  # terms of a series up to which each of them counts
+_MANY = 3  # layers from which on longer series have lengths that others share: their blocks are full anyway
+_LENGTHS, _STEP = (16, 32), 4  # those lengths, and how far apart they are beyond
 _EQUATIONS = ("shear rate", "continuity", "momentum along", "momentum across")
 
 
@@ -148,7 +149,7 @@ class System:
             return [forms[equation].terms[product] for equation, product in keys]
 
         fit = resolved(flow, layers, index, coefficients)
-        cuts, longest = fit.cut.tolist(), max(map(len, fit.series))
+        cuts, longest = fit.cut.tolist(), max(map(len, fit.series)) if len(layers) >= _MANY else 0
         for equation, name in enumerate(_EQUATIONS):
             here = [(*self._split(product), _rounded(series, longest), cut)
                     for (index, product), series, cut in zip(keys, fit.series, cuts, strict=True)
@@ -198,11 +199,11 @@ def _the_one(structure: Structure) -> Structure:
 
 
 def _rounded(series: np.ndarray, longest: int) -> np.ndarray:
-    """The series, with zeros up to a length that others share: that of the longest of a layer, where that is short.
+    """The series, with zeros up to a length that others share: that of the `longest` of a layer, where that is short.
 
-    Flows whose series differ by a few terms then have one structure.
+    Flows whose series differ by a few terms then have one structure. Not so where `longest` is 0.
     """
-    if len(series) <= _FEW:
+    if len(series) <= _FEW or not longest:
         return series
     length = longest if longest <= _LENGTHS[-1] else len(series)
     rounded = np.zeros(next((most for most in _LENGTHS if length <= most), -(-length // _STEP) * _STEP), series.dtype)

@@ -12,7 +12,7 @@ from scipy.linalg import lapack
 from .bordered import Places, phase
 
 _FULL = 1.25, 0.5  # width of a band over the size of the largest block above which blocks are faster (measured) ...
-_WIDE, _LARGEST = 128, 1024  # the former for any band, the latter for one so wide; size of blocks up to which
+_WIDE, _LARGEST = 128, 512  # the former for any band, the latter for one so wide; size of blocks up to which
 _BLOCK = {"f": (lapack.dgetrf, lapack.dgetrs), "c": (lapack.zgetrf, lapack.zgetrs)}
 
 
