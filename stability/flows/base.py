@@ -102,7 +102,7 @@ class Flow:
     unbounded: ClassVar[bool] = False  # whether the fluid is cut where it should go on to infinity
     data: ClassVar[Any] = None  # what was measured: `basis(z)`, `slopes(z)` and `covariance` of the terms of U
     chopped: ClassVar[float] = 0.0  # bound on what a series that stands for U leaves out of it
-    reflection: ClassVar[int] = 0  # of w in the lowest edge, 1 even or -1 odd, where that is a line of symmetry
+    reflection: ClassVar[int] = 0  # of w about the middle of the only layer, 1 even or -1 odd: modes of one parity
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
@@ -153,7 +153,7 @@ class Flow:
         return []
 
     def halves(self) -> "tuple[Flow, ...]":
-        """Return flows whose modes together are those of this one: itself, or symmetry classes on half the domain."""
+        """Return flows whose modes together are those of this one: itself, or its symmetry classes."""
         return (self,)
 
     @property

@@ -40,11 +40,12 @@ class Branch:
     """The mode `start` followed to any wavenumber; `solver` refines what is asked for, `rough` walks.
 
     `lost` maps a side, 1 for rising k and -1 for falling k, to the reason why the walk ended there. `seen` are modes
-    that were looked at before the start was found.
+    that were looked at before the start was found; `final` tells that the start is as `solver` has it.
     """
 
-    def __init__(self, solver: "Solver", start: "Mode", rough: "Solver | None" = None, seen: Any = ()) -> None:
-        self.solver, self.start, self._seen = solver, start, seen
+    def __init__(self, solver: "Solver", start: "Mode", rough: "Solver | None" = None, seen: Any = (),
+                 final: bool = False) -> None:
+        self.solver, self.start, self._seen, self._final = solver, start, seen, final
         rough = rough or solver.rough(_ROUGH)
         self._walks = {side: Walk(rough, start, solver) for side in (1, -1)}
         self.lost = {}
@@ -117,6 +118,8 @@ class Branch:
         `known` is one near by that is resolved, if there is one: it tells which degree to try.
         """
         near = nodes[index]
+        if self._final and near is self.start and k == near.k:
+            return near
         try:
             if len(nodes) > 1 and k != near.k:
                 degree = self.solver.next_degree(known) if known else 0

@@ -279,7 +279,7 @@ def leading_branch(solver: Solver, known: Any = None) -> Branch:
     best = max(mode.growth_rate - mode.error for mode in rivals)
     mode = max((mode for mode in rivals if mode.growth_rate + mode.error >= best), key=lambda mode: mode.phase_speed)
     (half,) = (half for half in solver.halves if half.flow == mode.flow)
-    return Branch(half, mode, rough_solver(half, known))
+    return Branch(half, mode, rough_solver(half, known), final=True)
 
 
 def _most_unstable(solver: Solver, wavenumbers: Any) -> Iterator[Any]:
