@@ -108,7 +108,8 @@ def test_long_wave_thresholds_need_no_waves_of_finite_length(monkeypatch):
 
 def test_a_neutral_curve_is_drawn_on_the_scale_of_the_wavenumbers_asked_for():
     curve = neutral_curve(flows.Film(), "Re", np.geomspace(0.01, 1.0, 3), span=(2.0, 100.0))
-    even = replace(curve, points=tuple(replace(point, k=k) for point, k in zip(curve.points, (0.01, 0.5, 0.99))))
+    evenly = zip(curve.points, (0.01, 0.5, 0.99), strict=True)
+    even = replace(curve, points=tuple(replace(point, k=k) for point, k in evenly))
     assert [panel.x.scale for result in (curve, even) for panel in result.panels()] == ["log"] * 2 + ["linear"] * 2
 
 
