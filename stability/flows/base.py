@@ -2,14 +2,15 @@
 
 from collections.abc import Callable
 from dataclasses import Field, dataclass, field, fields
-from math import inf, isfinite, isinf
+from math import inf, isinf
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from ..checks import LARGEST, as_number, check_options, in_double_precision, shown
+from ..checks import shown
 from ..equations.layer import Profile
 from ..errors import ParameterError
 from . import sources
 from .contract import check_body, verify
+from .rules import check_parameter, check_varied
 
 _INSET, _AROUND = 1e-3, 100.0  # of a bounded range left out at its ends; factor about the default of an unbounded one
 
@@ -57,11 +58,6 @@ def table_parameter(default: str, read: Callable[[str, Any], Any], *, kinds: str
     """Declare a parameter that is a value of its own, such as a file of data: `read(name, value)` makes it from what is
     given, or raises a ParameterError; `kinds` says what that may be."""
     return field(default=default, metadata={"table": True, "read": read, "kinds": kinds, "meaning": meaning})
-
-
-def numeric(item: Any) -> bool:
-    """Whether a field of a flow is a number, that can be swept, varied and differenced: no name and no table."""
-    return not {"options", "table"} & item.metadata.keys()
 
 
 @dataclass(frozen=True)
@@ -220,45 +216,9 @@ def check_flow(flow: Any) -> Any:
     return flow
 
 
-def check_parameter(flow: Any, item: Any, value: Any) -> Any:
-    """Return the value as a float (or one of the options), or raise a `ParameterError` that says why not."""
-    rule = item.metadata
-    if "options" in rule:
-        return check_options(f"{flow}: {item.name}", value, rule["options"])
-    if "table" in rule:
-        return rule["read"](f"{flow}: {item.name}", value)
-    number = as_number(value)
-    if number is None:
-        raise ParameterError(f"{flow}: {item.name} must be a number in {allowed(rule)} (got {shown(value)})")
-    inside = (rule["low"] is None or number > rule["low"] or rule["closed"] and number == rule["low"]) \
-        and (rule["high"] is None or number < rule["high"])
-    if not inside or not (isfinite(number) or rule["unbounded"] and (number > 0 or rule["low"] is None)):
-        reason = f": {rule['reason']}" if rule["reason"] else ""
-        raise ParameterError(f"{flow}: {item.name} must lie in {allowed(rule)}{reason} (got {number:g})")
-    if isfinite(number) and not in_double_precision(number):
-        raise ParameterError(f"{flow}: {item.name} must lie between {1 / LARGEST:g} and {LARGEST:g} for double "
-                             f"precision: change the scales (got {number:g})")
-    return number
-
-
 def check_parameter_name(flow: Flow, name: str) -> str:
     """Return `name` if it is a numeric parameter of the flow, else raise a ParameterError."""
-    known = [item.name for item in fields(flow) if numeric(item)]
-    if not (isinstance(name, str) and name in known):
-        raise ParameterError(f"{flow.name} has no numeric parameter {shown(name)} to vary; it has {', '.join(known)}")
-    return name
-
-
-def allowed(rule: Any) -> Any:
-    """The admissible values in words: `(1, inf)` is open, `[0, inf]` admits its ends, `a | b` is a choice."""
-    if "options" in rule:
-        return " | ".join(rule["options"])
-    if "table" in rule:
-        return rule["kinds"]
-    low = "-inf" if rule["low"] is None else f"{rule['low']:g}"
-    high = "inf" if rule["high"] is None else f"{rule['high']:g}"
-    closed = rule["closed"] or rule["unbounded"] and rule["low"] is None
-    return f"{'[' if closed else '('}{low}, {high}{']' if rule['unbounded'] else ')'}"
+    return check_varied(flow.name, fields(flow), name)
 
 
 def span_of(flow: Any, vary: Any) -> Any:

@@ -23,6 +23,7 @@ from ..output.panels import GROWTH_RATE, LINE, PHASE_SPEED, POINTS, WAVENUMBER, 
 from ..output.record import Record
 from ..output.text import Row, measured
 from ..status import INTERRUPTED, LOST, Status, as_outgrown, is_resolved
+from .choices import MODES
 from .outgrown import Outgrown, outgrown
 
 if TYPE_CHECKING:
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
 
     from ..flows import Flow
 
-MODES = ("surface", "leading", "most-unstable")
 GROUP_SPEED = Axis("group_speed", "group speed $c_g$")
 
 _NOT_LOOKED = "the flow is ill posed; whether an internal mode outgrows the surface mode is told with rivals=True"

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..equations.system import System
 from ..errors import ParameterError
-from ..flows.base import numeric
+from ..flows.rules import numeric
 from ..modes.eigenfunction import sharpened
 from ..modes.mode import Mode
 from ..modes.solver import Solver
