@@ -31,6 +31,7 @@ _AGREEMENT = 0.03  # of the surface mode with its long-wave limit, in value and 
 _CONFIRMED = 3  # wavenumbers in a row, each a part of the last, at which it must agree
 _NO_FARTHER = 1.5, 1e-3  # factor in its distance from the limit that each may have over the one before, and a floor
 _TENDS, _CLOSE = 0.5, 1e-3  # limit of the difference over that at the last of them where a law is wrong; its accuracy
+_GLANCE = 0.3  # relative distance of a rate from a long-wave limit at which a mode that is foreseen may be meant
 _FEW = 3  # wavenumbers between two nodes that are refined one by one
 _DRIFT = 0.01  # largest relative difference of a refined rate from its interpolation
 _ASTRAY = 0.5  # largest deviation of the overlap with the next node from 1
@@ -261,9 +262,9 @@ def _glance(solver: Any, k: Any, limit: Any, exponent: Any, above: Any = None) -
 
     `above` is the one that was found at the wavenumber before, if any.
     """
-    vectors = (above.degree, above.x, above.y) if above else None
+    vectors, rate = (above.degree, above.x, above.y) if above else None, limit / solver.width(k)
     try:
-        mode = solver.solve(k, limit / solver.width(k), vectors, glance=True)
+        mode = solver.foreseen(k, rate, _GLANCE) or solver.solve(k, rate, vectors, glance=True)
     except ModeLost:
         return None, np.inf
     return mode, _distance(mode, limit, exponent)

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from .mode import Mode
     from .solver import Solver
 
-_CLOSE = 0.05  # largest relative distance of a rate from the one expected, if the walk knows what to expect
 _SIMILAR = 2.2  # largest ratio of degrees that are made the same
 
 
@@ -27,7 +26,7 @@ class Foresight:
         solver.prepare(np.array(list(known)))
         self._likely = {mode.k: mode for mode in _refined(solver, list(known.values()))}
 
-    def at(self, k: float, rate: complex, part: float = _CLOSE) -> "Mode | None":
+    def at(self, k: float, rate: complex, part: float) -> "Mode | None":
         """The mode foreseen at k if its rate is this one to a small part of it, or None."""
         mode = self._likely.get(k)
         return mode if mode and abs(mode.rate - rate) < part * abs(rate) else None

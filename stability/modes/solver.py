@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 _FAR_BELOW = 1e-15  # relative truncation error that is aimed at with the default tolerance
 _OVERSOLVED = 1e-7  # truncation over rounding below which one rung less of the degree suffices as well
 _VECTOR, _ROUGHEST = 0.01, 1e-6  # error of vectors without bars, in units of the tolerance; the largest
-_GLANCE = 0.3  # relative distance of a rate from a long-wave limit at which a mode may be meant
 _SCATTER = 40.0  # error of a slope from vectors right to rounding, in units of error times 1 or 1/k (measured)
 _BLIND = 12  # degree to try first where nothing is known
 _LEAST = 32  # degree of the smallest table of entries
@@ -184,9 +183,6 @@ class Solver:
         `vectors` is (degree, x, y) of a nearby mode, if known. Raises ModeLost where the iteration
         does not settle; a mode still unresolved at the largest degree is returned with that status.
         """
-        likely = self.foresight and self.foresight.at(k, rate, *((_GLANCE,) if glance else ()))
-        if likely and (glance or self.fits(likely)):
-            return likely
         start = self.degrees.index(degree or (vectors[0] if vectors else self.rung_degree(_BLIND)))
         for degree in self.degrees[start:]:
             pencil = self.pencil(degree)
@@ -197,6 +193,11 @@ class Solver:
                 break
             rate, vectors = eigen.rate, (degree, eigen.x, eigen.y)
         return mode
+
+    def foreseen(self, k: float, rate: complex, part: float) -> "Mode | None":
+        """The mode that is foreseen at k, if it is resolved and its rate is this one to a small part of it."""
+        likely = self.foresight and self.foresight.at(k, rate, part)
+        return likely if likely and self.fits(likely) else None
 
     def refined(self, mode: Mode) -> Mode:
         """Return a mode of a rougher solver as this one has it."""
