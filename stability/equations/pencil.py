@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..numerics import chebyshev
+from ..numerics.arithmetic import Arithmetic
 from ..numerics.bordered import Bordered, Factors, ManyFactors, Places
 from ..numerics.stack import Lines, Stack
 from .layer import FIELDS
@@ -174,6 +175,10 @@ class Pencil:
         padded = np.zeros((*series.shape[1:], 2 * self.degree + 2), series.dtype)
         padded[..., :len(series)] = series.T
         return np.abs(chebyshev.values(padded))
+
+    @property
+    def arithmetic(self) -> Arithmetic:
+        return Arithmetic(self)  # not kept: a pencil that refers to itself would outlive its use
 
     @cached_property
     def tail(self) -> Stack:

@@ -109,9 +109,9 @@ class Stack:
         """y^T part x for every part: (parts, points)."""
         return self._lines.to_parts(y[self._lines.row] * products)
 
-    def squares(self, weights: np.ndarray, y: np.ndarray, x: np.ndarray) -> Any:
-        """Sum over the entries of all parts of |weight y_i entry_ij x_j|^2: (points,)."""
-        return (self.spread(square(weights)) * square(y)[self._lines.row] * (self._squares @ square(x))).sum(axis=0)
+    def squares(self, y: np.ndarray, x: np.ndarray) -> Any:
+        """Sums over the entries of every part of |y_i entry_ij x_j|^2: (parts, points)."""
+        return self._lines.to_parts(square(y)[self._lines.row] * (self._squares @ square(x)))
 
 
 def with_data(matrix: Any, data: np.ndarray) -> Any:
