@@ -22,6 +22,8 @@ import numpy as np
 from ..numerics import chebyshev
 from ..numerics.arithmetic import Arithmetic
 from ..numerics.bordered import Bordered, Factors, ManyFactors, Places
+from ..numerics.kernel.compiled import Compiled, Packed
+from ..numerics.kernel.library import library
 from ..numerics.stack import Lines, Stack
 from .layer import FIELDS
 
@@ -59,7 +61,7 @@ class Layout:
     Attributes: `size` rows and columns, of which `interior` are banded; `columns` and `rows` map unknowns and equations
     to index arrays; `last` (equations, 4) are the last rows of each equation. `stack`, `tail`, `b` and `places` tell
     where the entries of A - rate B, of the rows beyond, of B and of the bordered band matrix lie; `inside`, `beyond`
-    and `carrying`, which entries of the table those are.
+    and `carrying`, which entries of the table those are; `carriers` (parts,), which parts are of B.
     """
 
     def __init__(self, table: "Table", degree: int) -> None:
@@ -79,6 +81,7 @@ class Layout:
                           (table.tail * len(self.last), self.size))
         self.b = Lines(part[carries], row[carries], column[carries], count, (self.size, self.size))
         self.rate_rows = np.unique(row[carries])
+        self.carriers = np.arange(count) >= self.structure.first_b
         self.entries = part[here], row[here], column[here]
 
     def common(self, other: "Layout") -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
@@ -151,9 +154,7 @@ class Pencil:
 
     def powers(self, rate: Any) -> np.ndarray:
         """Factor of every part in the residual: 1 in A, the rate in B; (parts,) then the shape of rate."""
-        powers = np.ones((len(self.parts), *np.shape(rate)), np.result_type(rate, float))
-        powers[self.first_b:] = rate
-        return powers
+        return np.where(self.layout.carriers[(...,) + (None,) * np.ndim(rate)], rate, 1.0)
 
     def cut(self, weights: Any, y: Any, x: Any) -> Any:
         """Bound on what series left out change y^T (A - rate B) x, (points,); `weights` (parts, points) of the parts.
@@ -178,7 +179,17 @@ class Pencil:
 
     @property
     def arithmetic(self) -> Arithmetic:
-        return Arithmetic(self)  # not kept: a pencil that refers to itself would outlive its use
+        """By compiled code where there is any."""
+        kernel = library()  # nothing is kept: a pencil that refers to itself would outlive its use
+        return Compiled(self, kernel) if kernel else Arithmetic(self)
+
+    @cached_property
+    def packed(self) -> Packed:
+        return Packed(self.stack, self.layout.places, len(self.parts), self.first_b)
+
+    @cached_property
+    def packed_tail(self) -> Packed:
+        return Packed(self.tail, self.layout.places, len(self.parts), self.first_b)
 
     @cached_property
     def tail(self) -> Stack:

@@ -22,13 +22,13 @@ _TINY = np.finfo(float).tiny
 class Iterated:
     """Right and left `vectors` after two inverse iterations, and their last `steps`.
 
-    `sizes` are, for each of the two, those of the first step, the last step and the vector; vectors are scaled by one
-    component. `uneven` tells where the matrix needs scales: at many points nothing holds there.
+    `sizes` (3, 2, ...) are those of the first step, the last step and the vector of either. Vectors are scaled
+    by one component. `uneven` tells where the matrix needs scales: at many points nothing holds there.
     """
 
     vectors: tuple[np.ndarray, ...]
     steps: tuple[np.ndarray, ...]
-    sizes: tuple[Any, ...]
+    sizes: np.ndarray
     uneven: Any
 
 
@@ -45,9 +45,9 @@ class Arithmetic:
         """
         factors = self._pencil.factors(weights, rate) if np.ndim(rate) else self.factors(weights, rate)
         right, left = self._pencil.b_products(weights)
-        (x, *x_last), (y, *y_last) = _iterated(right, factors.solve, x), _iterated(left, factors.solve_left, y)
-        steps, sizes = zip(x_last, y_last, strict=True)
-        return Iterated((x, y), steps, sizes, factors.uneven)
+        x, dx, x_sizes = _iterated(right, factors.solve, x)
+        y, dy, y_sizes = _iterated(left, factors.solve_left, y)
+        return Iterated((x, y), (dx, dy), np.array((x_sizes, y_sizes)).swapaxes(0, 1), factors.uneven)
 
     def factors(self, weights: np.ndarray, rate: Any) -> Any:
         """LU factors of A - rate B at one point, next to the rate where that is an eigenvalue to the last bit."""
@@ -63,11 +63,14 @@ class Arithmetic:
         return self._pencil.stack.brackets(y, self._pencil.stack.times(x))
 
     def changes(self, x: np.ndarray, y: np.ndarray, dx: np.ndarray, dy: np.ndarray) -> tuple[np.ndarray, ...]:
-        """The `brackets` of x and y, of dx and y, of x and dy; and the sums of |y_i entry_ij x_j|^2 of every part."""
+        """The `brackets` of x and y, of dx and y, and of x and dy: (3, parts, ...).
+
+        With them the sums of |y_i entry_ij x_j|^2 of every part, (parts, ...).
+        """
         stack = self._pencil.stack
         products = stack.times(x)
-        return (stack.brackets(y, products), stack.brackets(y, stack.times(dx)), stack.brackets(dy, products),
-                stack.squares(y, x))
+        pairs = (y, products), (y, stack.times(dx)), (dy, products)
+        return np.array([stack.brackets(*pair) for pair in pairs]), stack.squares(y, x)
 
     def beyond(self, weights: np.ndarray, x: np.ndarray) -> np.ndarray:
         """The rows beyond the truncation, weights times parts, times x: (rows,) or (rows, points)."""

@@ -31,6 +31,7 @@ _FACTORISATIONS = 12
 _ROUNDS = 3  # of factorisations at many points
 _CORRECTIONS = 12
 VECTOR = 1e-9  # error of a vector, and so of the slope, that is accepted
+_sum = np.add.reduce  # over the parts
 _OFFSET = 1e-3  # of a factorisation for corrections from its rate: it must not be singular
 
 
@@ -99,12 +100,12 @@ def refine_many(pencil: Any, weights: Any, rate: np.ndarray | None, x: np.ndarra
     if pencil.real and not np.any(np.imag(rate)):
         rate, x, y = rate.real, x.real, y.real
     x, y = (np.ascontiguousarray(vectors, np.result_type(vectors, rate)) for vectors in (x, y))
-    steps, shares = (np.zeros_like(x), np.zeros_like(y)), (np.zeros(len(rate)), np.zeros(len(rate)))
+    steps, shares = (np.zeros_like(x), np.zeros_like(y)), np.zeros((2, len(rate)))
     settled, left = np.zeros(len(rate), bool), np.arange(len(rate))
     for _ in range(_ROUNDS):
         last = pencil.arithmetic.iterate(weights.value[:, left], rate[left], x[:, left], y[:, left])
         parts, settled[left] = _judged(last, accuracy)
-        for whole, part in zip((x, y, *steps, *shares), (*last.vectors, *last.steps, *parts), strict=True):
+        for whole, part in zip((x, y, *steps, shares), (*last.vectors, *last.steps, parts), strict=True):
             whole[..., left] = part
         settled[left] &= ~last.uneven
         left = left[~settled[left] & ~last.uneven]
@@ -115,15 +116,15 @@ def refine_many(pencil: Any, weights: Any, rate: np.ndarray | None, x: np.ndarra
 
 
 def _judged(last: "Iterated", accuracy: float) -> tuple[Any, ...]:
-    """The shares of the last steps of both vectors that steps to come would make, and whether the quotient is settled.
+    """The shares (2, ...) of the last steps of both vectors that steps to come would make, and whether the quotient is
+    settled.
 
     The second step shrinks what the first one changed by the ratio of the distances to the wanted and the next
     eigenvalue, and so will the next.
     """
-    (x_change, x_error), (y_change, y_error) = (_converging(step / size, first / size)
-                                                for first, step, size in last.sizes)
-    shares = x_error / np.maximum(x_change, _TINY), y_error / np.maximum(y_change, _TINY)
-    return shares, _settled(x_error, y_error, accuracy)
+    first, step, size = last.sizes
+    change, error = _converging(step / size, first / size)
+    return error / np.maximum(change, _TINY), _settled(error[0], error[1], accuracy)
 
 
 def _twice(pencil: Any, weights: Any, found: "Eigen", bars: bool) -> "Eigen":
@@ -160,7 +161,7 @@ def _corrected(pencil: Any, weights: Any, found: "Eigen", bars: bool) -> "Eigen"
         settled = _settled(x_error, y_error)
         if settled:
             break
-    shares = x_error / max(x_change, _TINY), y_error / max(y_change, _TINY)
+    shares = np.array([x_error / max(x_change, _TINY), y_error / max(y_change, _TINY)])
     return _quotient(pencil, weights, x, y, (dx, dy), shares, settled, bars)
 
 
@@ -182,46 +183,36 @@ def _settled(x_error: Any, y_error: Any, accuracy: float = VECTOR) -> Any:
 
 def _rate(pencil: Any, value: np.ndarray) -> Any:
     """Rayleigh quotients from the brackets of all parts (parts, points)."""
-    return -value[: pencil.first_b].sum(axis=0) / value[pencil.first_b:].sum(axis=0)
+    return -_sum(value[: pencil.first_b]) / _sum(value[pencil.first_b:])
 
 
 def _quotient(pencil: Any, weights: Any, x: np.ndarray, y: np.ndarray, steps: Any, shares: Any, settled: Any,
               bars: bool) -> "Eigen":
     """Rayleigh quotients of the pairs (y^H, x), (size, points) or of one (size,), with slope in k and errors.
 
-    `steps` are the last ones of both vectors, with the `shares` of them that steps to come would make.
+    `steps` are the last ones of both vectors, with the `shares` of them that steps to come would make. The slope is
+    s = y L' x / (y B x), where L' is the derivative of A - rate B in k at a fixed rate: a change of x by dx makes
+    ds = y (L' - s B) dx / (y B x), and one of y the same from the left. The rate does not change, to first order.
     """
-    first, arithmetic = pencil.first_b, pencil.arithmetic
-    brackets, *changed, squares = arithmetic.changes(x, y, *steps) if bars else (arithmetic.brackets(x, y), None)
-    value = weights.value * brackets
-    norm = -value[first:].sum(axis=0)  # y B x
-    rate, size = value[:first].sum(axis=0) / norm, np.abs(norm)
+    arithmetic = pencil.arithmetic
+    brackets, squares = arithmetic.changes(x, y, *steps) if bars else (arithmetic.brackets(x, y)[None], None)
+    products = np.array((weights.value, weights.slope))[:, None] * brackets
+    of_value, of_slope = np.add.reduceat(products, (0, pencil.first_b), axis=2)  # sums over the parts of A, and of -B
+    norm = -of_value[0, 1]  # y B x
+    rate, size = of_value[0, 0] / norm, np.abs(norm)
+    slopes = (of_slope[:, 0] + rate * of_slope[:, 1]) / norm
     power = pencil.powers(rate)
-    y, weighted, sloped = y / norm, weights.value * power, weights.slope * power
-    slope = (sloped * brackets).sum(axis=0) / norm
-    spread = (weights.spread * np.abs(brackets * power)).sum(axis=0) / size
+    y, weighted = y / norm, weights.value * power
+    spread = _sum(weights.spread * np.abs(brackets[0] * power)) / size
     if pencil.cuts:
         spread += pencil.cut(weighted, y, x)
-    variance, scatter, left = (np.zeros(norm.shape) for _ in range(3))
+    scatter = left = rounding = np.zeros(norm.shape)
     if bars:
-        for change, share in zip(changed, shares, strict=True):
-            change = _change(first, weights.value, sloped, slope, change / norm)
-            scatter, left = scatter + change, left + share * change
-        variance = (square(weighted) * squares).sum(axis=0)  # of matrix entries
-        variance += square(value * power).sum(axis=0)  # of the weights, common to a part
-    tail = np.abs(arithmetic.beyond(weighted, x))
-    beyond = tail.reshape(len(pencil.last), -1, *norm.shape).sum(axis=1)
-    truncation = (beyond * np.abs(y[pencil.last]).max(axis=1)).sum(axis=0)
+        change = np.abs(slopes[1:] + slopes[0] * of_value[1:, 1] / norm)
+        scatter, left = _sum(change), _sum(shares * change)
+        variance = square(weighted) * (squares + square(brackets[0]))  # of entries, of the weights common to a part
+        rounding = _EPS * np.sqrt(_sum(variance)) / size
+    tail = np.abs(arithmetic.beyond(weighted, x)).reshape(len(pencil.last), -1, *norm.shape)
+    truncation = _sum(tail.sum(axis=1) * np.abs(y[pencil.last]).max(axis=1))
     right, adjoint = (np.ascontiguousarray(rows.T) for rows in (x, y.conj()))
-    rounding = _EPS * np.sqrt(variance) / size
-    return Eigen(rate, slope, truncation, rounding, spread, scatter, left, right, adjoint, settled)
-
-
-def _change(first: int, value: np.ndarray, sloped: np.ndarray, slope: Any, brackets: np.ndarray) -> Any:
-    """What a step of one vector of a pair (y, x), y B x = 1, does to the slope in k: `brackets` of it with the other.
-
-    With s = y L' x / (y B x), where L' is the derivative of A - rate B in k at a fixed rate, a change of x by dx makes
-    ds = y (L' - s B) dx, and one of y the same from the left. The rate does not change, to first order.
-    """
-    shift = (value * brackets)[first:].sum(axis=0)  # -y B dx
-    return np.abs((sloped * brackets).sum(axis=0) + slope * shift)
+    return Eigen(rate, slopes[0], truncation, rounding, spread, scatter, left, right, adjoint, settled)

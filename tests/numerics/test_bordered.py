@@ -84,10 +84,13 @@ def test_solves_at_many_points_are_those_of_each(matrices):
         np.testing.assert_allclose(many.solve_left(f)[:, index], one.solve_left(f[:, index]), rtol=1e-9)
 
 
-def test_a_singular_point_spoils_no_other():
-    bordered = in_a_band(np.array([0, 0, 0, 0, 1]), np.arange(5), np.arange(5), np.ones(5), 2, 3, 2)
+@pytest.mark.parametrize("row", [0, 4], ids=["interior", "border"])
+def test_a_singular_point_spoils_no_other(row):
+    value = np.ones(6)
+    value[row], row_of = 0.0, np.append(np.arange(5), row)
+    bordered = in_a_band(np.array([0, 0, 0, 0, 0, 1]), row_of, row_of, value, 2, 3, 2)
     with np.errstate(all="ignore"):
-        found = ManyFactors(bordered, np.array([[1.0, 0.0], [1.0, 1.0]])).solve(np.ones((5, 2)))
+        found = ManyFactors(bordered, np.array([[1.0, 1.0], [1.0, 0.0]])).solve(np.ones((5, 2)))
     np.testing.assert_array_equal(np.isfinite(found).all(axis=0), [True, False])
 
 
