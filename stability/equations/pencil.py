@@ -61,7 +61,8 @@ class Layout:
     Attributes: `size` rows and columns, of which `interior` are banded; `columns` and `rows` map unknowns and equations
     to index arrays; `last` (equations, 4) are the last rows of each equation. `stack`, `tail`, `b` and `places` tell
     where the entries of A - rate B, of the rows beyond, of B and of the bordered band matrix lie; `inside`, `beyond`
-    and `carrying`, which entries of the table those are; `carriers` (parts,), which parts are of B.
+    and `carrying`, which entries of the table those are; `carriers` (parts,), which parts are of B, and `sides` (2,) the
+    first of A and the first of B.
     """
 
     def __init__(self, table: "Table", degree: int) -> None:
@@ -81,7 +82,7 @@ class Layout:
                           (table.tail * len(self.last), self.size))
         self.b = Lines(part[carries], row[carries], column[carries], count, (self.size, self.size))
         self.rate_rows = np.unique(row[carries])
-        self.carriers = np.arange(count) >= self.structure.first_b
+        self.carriers, self.sides = np.arange(count) >= self.structure.first_b, np.array((0, self.structure.first_b))
         self.entries = part[here], row[here], column[here]
 
     def common(self, other: "Layout") -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:

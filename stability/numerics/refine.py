@@ -20,7 +20,6 @@ import numpy as np
 
 from ..errors import ModeLost
 from .arithmetic import size_of
-from .stack import square
 
 if TYPE_CHECKING:
     from .arithmetic import Iterated
@@ -71,17 +70,17 @@ def refine(pencil: Any, weights: Any, rate: complex, x: np.ndarray | None = None
     wrong by `accuracy` at most, the rate by its square: less is right for a rough look.
     """
     x, y = (_start(pencil.size) if vector is None else vector for vector in (x, y))
-    y = y.conj()  # y^H from here on
+    y, arithmetic = y.conj(), pencil.arithmetic  # y^H from here on
     for _ in range(_FACTORISATIONS):
         if pencil.real and not np.imag(rate):
             rate, x, y = np.real(rate), x.real, y.real
-        last = pencil.arithmetic.iterate(weights.value, rate, x, y)
+        last = arithmetic.iterate(weights.value, rate, x, y)
         x, y = last.vectors
         shares, settled = _judged(last, accuracy)
         if settled:
             found = _quotient(pencil, weights, x, y, last.steps, shares, settled, bars)
             return _twice(pencil, weights, found, bars) if last.uneven else found
-        rate = _rate(pencil, weights.value * pencil.arithmetic.brackets(x, y))
+        rate = _rate(pencil, weights.value * arithmetic.brackets(x, y))
         if not np.isfinite(rate):
             break
     raise ModeLost(f"inverse iteration near rate {complex(rate):.6g} did not settle")
@@ -94,16 +93,16 @@ def refine_many(pencil: Any, weights: Any, rate: np.ndarray | None, x: np.ndarra
     Without `bars` the rounding is left at 0: a rough look does not need it. Without a rate the quotient of the vectors
     is the guess.
     """
-    x, y = x.T, y.conj().T
+    x, y, arithmetic = x.T, y.conj().T, pencil.arithmetic
     if rate is None:
-        rate = _rate(pencil, weights.value * pencil.arithmetic.brackets(x, y))
+        rate = _rate(pencil, weights.value * arithmetic.brackets(x, y))
     if pencil.real and not np.any(np.imag(rate)):
         rate, x, y = rate.real, x.real, y.real
     x, y = (np.ascontiguousarray(vectors, np.result_type(vectors, rate)) for vectors in (x, y))
     steps, shares = (np.zeros_like(x), np.zeros_like(y)), np.zeros((2, len(rate)))
     settled, left = np.zeros(len(rate), bool), np.arange(len(rate))
     for _ in range(_ROUNDS):
-        last = pencil.arithmetic.iterate(weights.value[:, left], rate[left], x[:, left], y[:, left])
+        last = arithmetic.iterate(weights.value[:, left], rate[left], x[:, left], y[:, left])
         parts, settled[left] = _judged(last, accuracy)
         for whole, part in zip((x, y, *steps, shares), (*last.vectors, *last.steps, parts), strict=True):
             whole[..., left] = part
@@ -111,7 +110,7 @@ def refine_many(pencil: Any, weights: Any, rate: np.ndarray | None, x: np.ndarra
         left = left[~settled[left] & ~last.uneven]
         if not len(left):
             break
-        rate = _rate(pencil, weights.value * pencil.arithmetic.brackets(x, y))
+        rate = _rate(pencil, weights.value * arithmetic.brackets(x, y))
     return _quotient(pencil, weights, x, y, steps, shares, settled, bars)
 
 
@@ -197,22 +196,22 @@ def _quotient(pencil: Any, weights: Any, x: np.ndarray, y: np.ndarray, steps: An
     arithmetic = pencil.arithmetic
     brackets, squares = arithmetic.changes(x, y, *steps) if bars else (arithmetic.brackets(x, y)[None], None)
     products = np.array((weights.value, weights.slope))[:, None] * brackets
-    of_value, of_slope = np.add.reduceat(products, (0, pencil.first_b), axis=2)  # sums over the parts of A, and of -B
+    of_value, of_slope = np.add.reduceat(products, pencil.layout.sides, axis=2)  # sums over the parts of A, of -B
     norm = -of_value[0, 1]  # y B x
-    rate, size = of_value[0, 0] / norm, np.abs(norm)
+    rate, size = of_value[0, 0] / norm, abs(norm)
     slopes = (of_slope[:, 0] + rate * of_slope[:, 1]) / norm
     power = pencil.powers(rate)
     y, weighted = y / norm, weights.value * power
-    spread = _sum(weights.spread * np.abs(brackets[0] * power)) / size
+    spread = _sum(weights.spread * abs(brackets[0] * power)) / size
     if pencil.cuts:
         spread += pencil.cut(weighted, y, x)
     scatter = left = rounding = np.zeros(norm.shape)
     if bars:
-        change = np.abs(slopes[1:] + slopes[0] * of_value[1:, 1] / norm)
+        change = abs(slopes[1:] + slopes[0] * of_value[1:, 1] / norm)
         scatter, left = _sum(change), _sum(shares * change)
-        variance = square(weighted) * (squares + square(brackets[0]))  # of entries, of the weights common to a part
+        variance = abs(weighted) ** 2 * (squares + abs(brackets[0]) ** 2)  # of entries, of weights common to a part
         rounding = _EPS * np.sqrt(_sum(variance)) / size
-    tail = np.abs(arithmetic.beyond(weighted, x)).reshape(len(pencil.last), -1, *norm.shape)
-    truncation = _sum(tail.sum(axis=1) * np.abs(y[pencil.last]).max(axis=1))
+    tail = abs(arithmetic.beyond(weighted, x)).reshape(len(pencil.last), -1, *norm.shape)
+    truncation = _sum(tail.sum(axis=1) * abs(y[pencil.last]).max(axis=1))
     right, adjoint = (np.ascontiguousarray(rows.T) for rows in (x, y.conj()))
     return Eigen(rate, slopes[0], truncation, rounding, spread, scatter, left, right, adjoint, settled)
