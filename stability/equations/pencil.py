@@ -61,7 +61,7 @@ class Layout:
     Attributes: `size` rows and columns, of which `interior` are banded; `columns` and `rows` map unknowns and equations
     to index arrays; `last` (equations, 4) are the last rows of each equation. `stack`, `tail`, `b` and `places` tell
     where the entries of A - rate B, of the rows beyond, of B and of the bordered band matrix lie; `inside`, `beyond`
-    and `carrying`, which entries of the table those are; `carriers` (parts,), which parts are of B, and `sides` (2,) the
+    and `carrying`, which entries of the table those are; `carriers` (parts,), which parts are of B, and `sides` the
     first of A and the first of B.
     """
 
