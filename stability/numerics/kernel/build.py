@@ -18,7 +18,6 @@ from .place import FLAGS, SOURCES, SWITCH, compiler_installed, kernel_folders, k
 
 _PATIENCE = 600.0  # seconds after which somebody who is making it is not any more
 _LONGEST = 300.0  # seconds that a compiler may take
-_children: list[Popen] = []  # kept: one that is forgotten while it works would be warned of
 
 
 class NoKernel(StabilityError):
@@ -78,7 +77,8 @@ def build_meanwhile() -> None:
             folder.mkdir(parents=True, exist_ok=True)
             if _claimed(_mark(folder)):
                 command = [sys.executable, "-m", __package__, "--meanwhile"]
-                _children.append(Popen(command, stdin=DEVNULL, stdout=DEVNULL, stderr=DEVNULL, start_new_session=True))
+                child = Popen(command, stdin=DEVNULL, stdout=DEVNULL, stderr=DEVNULL, start_new_session=True)
+                child.returncode = 0  # it may outlive us, and nobody is to be warned of that
             return
 
 
