@@ -5,12 +5,12 @@
 
    Row r of the band begins with column r - lower; `left` holds the columns of L below the diagonal, `pivot` the inverse
    diagonal of U. `reach` is the last column of a row, `swap` what row k was exchanged with when its turn came. Behind
-   `corner` there is room for the inverse of corner'. The last of the vectors is for the border alone. */
+   `corner` there is room for the inverse of corner'; `edge` is for the border of a vector. */
 #define Work NAME(Work)
 typedef struct {
     const Lines *p;
     long width, side, deep, flat; /* gaps of rows of band, right and left, and of vectors and rows of the bottom */
-    double *band, *right, *left, *bottom, *corner, *pivot, *vector[6];
+    double *band, *right, *left, *bottom, *corner, *pivot, *vector[3], *edge;
     int *reach, *swap;
     void *memory;
 } Work;
@@ -32,22 +32,22 @@ static int NAME(prepare)(Work *w, const Lines *p)
     w->deep = (p->lower + LANES) / LANES * LANES;
     w->flat = n + m + p->lower + 2 * LANES;
     const long sizes[] = {n * w->width, n * w->side, n * w->deep, m * w->flat, 2 * m * w->side, n,
-                          w->flat, w->flat, w->flat, w->flat, w->flat, w->flat};
+                          w->flat, w->flat, w->flat, w->flat};
     double **places[] = {&w->band, &w->right, &w->left, &w->bottom, &w->corner, &w->pivot, w->vector, w->vector + 1,
-                         w->vector + 2, w->vector + 3, w->vector + 4, w->vector + 5};
+                         w->vector + 2, &w->edge};
     long room = n + 1; /* for reach and swap */
-    for (int i = 0; i < 12; i++)
+    for (int i = 0; i < 10; i++)
         room += PARTS * sizes[i];
     w->memory = malloc(room * sizeof(double));
     if (!w->memory)
         return 0;
     double *next = w->memory;
-    for (int i = 0; i < 12; next += PARTS * sizes[i], i++)
+    for (int i = 0; i < 10; next += PARTS * sizes[i], i++)
         *places[i] = next;
     w->reach = (int *)next;
     w->swap = w->reach + n;
     memset(w->left, 0, PARTS * n * w->deep * sizeof(double));
-    memset(w->vector[5], 0, PARTS * w->flat * sizeof(double));
+    memset(w->edge, 0, PARTS * w->flat * sizeof(double));
     return 1;
 }
 
@@ -191,7 +191,7 @@ static void NAME(solve)(const Work *w, double *f)
 {
     const Lines *p = w->p;
     const long n = p->interior, m = p->border, flat = w->flat;
-    double *g = w->vector[5];
+    double *g = w->edge;
     for (long k = 0; k < n; k++) {
         const number a = get(f + w->swap[k], flat);
         put(f + w->swap[k], flat, get(f + k, flat));
@@ -214,7 +214,7 @@ static void NAME(solve_left)(const Work *w, double *g)
 {
     const Lines *p = w->p;
     const long n = p->interior, m = p->border, flat = w->flat;
-    double *h = w->vector[5];
+    double *h = w->edge;
     for (long k = 0; k < n; k++) {
         const number a = times(get(g + k, flat), PIVOT(k));
         put(g + k, flat, a);
