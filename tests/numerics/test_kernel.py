@@ -58,31 +58,44 @@ def with_kernel(kernel, monkeypatch):
 SIZES = [(30, 4, 3, 2), (1, 1, 0, 0), (9, 5, 14, 10), (40, 9, 1, 7), (65, 4, 26, 22), (37, 2, 0, 5), (33, 3, 6, 0)]
 
 
-def pencil_of(interior, border, lower, upper, seed, turned):
-    """A pencil of three random matrices with a full border, the last two parts of -B, and a tail of six rows."""
+def pencil_of(full, interior, tail=None):
+    """The pencil of A and the parts of -B, full matrices (parts, size, size), with rows beyond (parts, rows, size)."""
+    def entries(matrices, first=0):
+        part, *place = np.nonzero(matrices[first:])
+        return (part + first, *place), matrices[first:][(part, *place)]
+
+    def stack(matrices, first=0, sign=1):
+        places, values = entries(matrices, first)
+        return Stack(Lines(*places, len(matrices), matrices.shape[1:]), sign * values)
+
+    parts, size, _ = full.shape
+    places, values = entries(full)
+    where = Places(*places, parts, interior, size - interior)
+    bordered, rows = Bordered(where, values), stack(full)
+
+    def factors(weights, rate):
+        powers = np.array([np.ones_like(rate), *(parts - 1) * [rate]])
+        return (ManyFactors if np.ndim(rate) else Factors)(bordered, weights * powers)
+
+    pencil = SimpleNamespace(parts=range(parts), real=np.isrealobj(full), stack=rows, factors=factors,
+                             b_products=stack(full, 1, -1).summed, packed=Packed(rows, where, parts, 1))
+    if tail is not None:
+        pencil.tail = stack(tail)
+        pencil.packed_tail = Packed(pencil.tail, where, parts, 1)
+    return pencil
+
+
+def random_pencil(interior, border, lower, upper, seed, turned):
+    """Three random matrices with a full border and a tail of six rows, in full and as a pencil."""
     rng, parts, size = np.random.default_rng(seed), 3, interior + border
     shift = np.arange(size)[:, None] - np.arange(size)
     places = (shift <= lower) & (shift >= -upper)
     places[interior:] = places[:, interior:] = True
-    full = rng.standard_normal((parts, size, size)) + 1j * turned * rng.standard_normal((parts, size, size))
-    full = (full if turned else full.real) * (places & (rng.random(places.shape) < 0.7) | np.eye(size, dtype=bool))
+    full = vectors(rng, (parts, size, size), turned)
+    full *= places & (rng.random(places.shape) < 0.7) | np.eye(size, dtype=bool)
     full[0] += (lower + upper + border) * np.eye(size)
-    tail = rng.standard_normal((parts, 6, size)) + 0j * turned
-    entries, beyond = [(*np.nonzero(one), one[np.nonzero(one)]) for one in (full, tail)]
-    stack = Stack(Lines(*entries[:3], parts, (size, size)), entries[3])
-    b = [values[entries[0] > 0] for values in entries]
-    b = Stack(Lines(*b[:3], parts, (size, size)), -b[3])
-    beyond = Stack(Lines(*beyond[:3], parts, tail.shape[1:]), beyond[3])
-    where = Places(*entries[:3], parts, interior, border)
-    bordered = Bordered(where, entries[3])
-
-    def factors(weights, rate):
-        kind = ManyFactors if np.ndim(rate) else Factors
-        return kind(bordered, weights * np.array([np.ones_like(rate), rate, rate]))
-
-    return full, tail, SimpleNamespace(
-        parts=range(parts), real=not turned, stack=stack, tail=beyond, b_products=b.summed, factors=factors,
-        packed=Packed(stack, where, parts, 1), packed_tail=Packed(beyond, where, parts, 1))
+    tail = vectors(rng, (parts, 6, size), turned)
+    return full, tail, pencil_of(full, interior, tail)
 
 
 def vectors(rng, shape, turned):
@@ -94,7 +107,7 @@ def vectors(rng, shape, turned):
 @pytest.mark.parametrize("sizes", SIZES, ids=str)
 @pytest.mark.parametrize("carrier", [Arithmetic, Compiled])
 def test_iterations_and_products_are_those_of_full_matrices(kernel, carrier, sizes, points, turned):
-    full, tail, pencil = pencil_of(*sizes, 5, turned)
+    full, tail, pencil = random_pencil(*sizes, 5, turned)
     rng, size, shape = np.random.default_rng(6), sum(sizes[:2]), () if points is None else (points,)
     weights, rate = vectors(rng, (3, *shape), turned), 0.1 * vectors(rng, shape, turned)
     weights[0] = 1 + 0.1 * weights[0]
@@ -254,29 +267,11 @@ def test_what_does_not_settle_is_lost(with_kernel, monkeypatch, used, kind):
         refine(pencil, weights, 1.1 * rate)
 
 
-def two_parts(full, interior, border, lower):
-    """The pencil of A and -B, full matrices (2, size, size) of as many bands below the diagonal as above."""
-    entries = *np.nonzero(full), full[np.nonzero(full)]
-    stack = Stack(Lines(*entries[:3], 2, full.shape[1:]), entries[3])
-    of_b = [values[entries[0] > 0] for values in entries]
-    b = Stack(Lines(*of_b[:3], 2, full.shape[1:]), -of_b[3])
-    where = Places(*entries[:3], 2, interior, border)
-    assert (where.lower, where.upper) == (lower, lower)
-    bordered = Bordered(where, entries[3])
-
-    def factors(weights, rate):
-        kind = ManyFactors if np.ndim(rate) else Factors
-        return kind(bordered, weights * np.array([np.ones_like(rate), rate]))
-
-    return SimpleNamespace(parts=range(2), real=True, stack=stack, factors=factors, b_products=b.summed,
-                           packed=Packed(stack, where, 2, 1))
-
-
 @pytest.mark.parametrize("part", ["interior", "border"])
 def test_a_singular_factor_is_left_to_numpy_and_spoils_no_other(kernel, part):
     value = np.ones((2, 8))
     value[1, 0 if part == "interior" else -1] = -1.0  # A - rate B is singular at 1 there
-    pencil = two_parts(np.array([np.diag(row) for row in value]), 6, 2, 0)
+    pencil = pencil_of(np.array([np.diag(row) for row in value]), 6)
     x, y = np.random.default_rng(3).standard_normal((2, 8))
     one, other = (numbers.iterate(np.ones(2), 1.0, x, y) for numbers in (Compiled(pencil, kernel), Arithmetic(pencil)))
     np.testing.assert_array_equal(one.vectors, other.vectors)
@@ -296,7 +291,7 @@ def test_rows_with_small_pivots_are_exchanged(kernel, carrier):
     full = np.zeros((2, 4, 4))
     full[0, :2, :2] = full[0, 2:, 2:] = block
     full[1] = -np.eye(4)
-    pencil = two_parts(full, 2, 2, 1)
+    pencil = pencil_of(full, 2)
     x, y = np.random.default_rng(4).standard_normal((2, 4))
     found = carrier(*([pencil, kernel] if carrier is Compiled else [pencil])).iterate(np.ones(2), 0.0, x, y)
     for vector, start in zip(found.vectors, (x, y), strict=True):  # the block is symmetric
