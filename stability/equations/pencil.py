@@ -20,7 +20,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..numerics import chebyshev
+from ..numerics.arithmetic import Arithmetic
 from ..numerics.bordered import Bordered, Factors, ManyFactors, Places
+from ..numerics.kernel.compiled import Compiled, Packed
+from ..numerics.kernel.library import library
 from ..numerics.stack import Lines, Stack
 from .layer import FIELDS
 
@@ -59,7 +62,8 @@ class Layout:
     to index arrays of their coefficients, `orders` to the numbers of those; `last` (equations, 4) are the last rows of
     each equation; `tails` rows lie beyond. `stack`, `tail`, `b` and `places` tell
     where the entries of A - rate B, of the rows beyond, of B and of the bordered band matrix lie; `inside`, `beyond`
-    and `carrying`, which entries of the table those are.
+    and `carrying`, which entries of the table those are; `carriers` (parts,), which parts are of B, and `sides` the
+    first of A and the first of B.
     """
 
     def __init__(self, table: "Table", degree: int) -> None:
@@ -79,6 +83,7 @@ class Layout:
                           (self.tails, self.size))
         self.b = Lines(part[carries], row[carries], column[carries], count, (self.size, self.size))
         self.rate_rows = np.unique(row[carries])
+        self.carriers, self.sides = np.arange(count) >= self.structure.first_b, np.array((0, self.structure.first_b))
         self.entries = part[here], row[here], column[here]
 
     def common(self, other: "Layout") -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
@@ -175,9 +180,7 @@ class Pencil:
 
     def powers(self, rate: Any) -> np.ndarray:
         """Factor of every part in the residual: 1 in A, the rate in B; (parts,) then the shape of rate."""
-        powers = np.ones((len(self.parts), *np.shape(rate)), np.result_type(rate, float))
-        powers[self.first_b:] = rate
-        return powers
+        return np.where(self.layout.carriers[(...,) + (None,) * np.ndim(rate)], rate, 1.0)
 
     def cut(self, weights: Any, y: Any, x: Any) -> Any:
         """Bound on what series left out change y^T (A - rate B) x, (points,); `weights` (parts, points) of the parts.
@@ -199,6 +202,20 @@ class Pencil:
         padded = np.zeros((*series.shape[1:], 2 * self.degree + 2), series.dtype)
         padded[..., :len(series)] = series.T
         return np.abs(chebyshev.values(padded))
+
+    @property
+    def arithmetic(self) -> Arithmetic:
+        """By compiled code where there is any."""
+        kernel = library()  # nothing is kept: a pencil that refers to itself would outlive its use
+        return Compiled(self, kernel) if kernel else Arithmetic(self)
+
+    @cached_property
+    def packed(self) -> Packed:
+        return Packed(self.stack, self.layout.places, len(self.parts), self.first_b)
+
+    @cached_property
+    def packed_tail(self) -> Packed:
+        return Packed(self.tail, self.layout.places, len(self.parts), self.first_b)
 
     @cached_property
     def tail(self) -> Stack:
