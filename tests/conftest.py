@@ -1,4 +1,5 @@
-"""One BLAS thread, and tests in an order of their own: a seed shown in the header, fixed by STABILITY_TEST_SEED.
+"""One BLAS thread, no compiled kernel, and tests in an order of their own: a seed shown in the header, fixed by
+STABILITY_TEST_SEED. With STABILITY_KERNEL=FOLDER all tests use the kernel that is there.
 
 Ctrl-C works in the processes that tests start, even where the tests themselves run in the background of a shell.
 """
@@ -11,6 +12,7 @@ import time
 import pytest
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault("STABILITY_KERNEL", "off")
 signal.signal(signal.SIGINT, signal.default_int_handler)
 SEED = int(os.environ.setdefault("STABILITY_TEST_SEED", str(time.time_ns() % 10**6)))  # the same in all processes
 

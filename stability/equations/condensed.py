@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.sparse import csr_array
 
+from ..numerics.arithmetic import Arithmetic
 from ..numerics.blocks import Blocks
 from ..numerics.bordered import Bordered, Factors, ManyFactors
 from ..numerics.stack import Lines, Stack
@@ -171,7 +172,8 @@ class Reduced:
 class Condensed:
     """The condensed form S of a pencil whose entries in the layout have these values.
 
-    It has the `stack`, `powers`, `factors` and `b_products` of a pencil, for weights of its own parts.
+    It has the `stack`, `powers`, `factors`, `b_products` and `arithmetic` of a pencil, for weights of its own parts;
+    `sides` are the first without and the first with the rate.
     """
 
     def __init__(self, arrangement: Arrangement, value: np.ndarray) -> None:
@@ -179,6 +181,7 @@ class Condensed:
         blocks = _condensed(arrangement, value)
         self._reduced = arrangement.reduced(list(blocks))
         self.first_b = self._reduced.first_b
+        self.sides = np.array((0, self.first_b))
         self._value = np.concatenate([block.ravel() for block in blocks.values()])
         self._rows = Stack(arrangement.rows, value[arrangement.in_rows])
         self._columns = Stack(arrangement.columns, value[arrangement.in_columns])
@@ -194,6 +197,18 @@ class Condensed:
     @cached_property
     def _b(self) -> Stack:
         return Stack(self._reduced.b, -self._value[self._reduced.carrying])
+
+    @property
+    def arithmetic(self) -> Arithmetic:
+        return Arithmetic(self)  # nothing is kept: what refers to itself would outlive its use
+
+    def changes(self, x: np.ndarray, y: np.ndarray, *steps: np.ndarray) -> np.ndarray:
+        """y^T part x for every part, and with `steps` dx and dy of dx and y, and x and dy: (1 or 3, parts, ...)."""
+        products, brackets = self.stack.times(x), self.stack.brackets
+        pairs = [(y, products)]
+        if steps:
+            pairs += [(y, self.stack.times(steps[0])), (steps[1], products)]
+        return np.array([brackets(*pair) for pair in pairs])
 
     def weights(self, weights: "Weights") -> "Weights":
         """The `Weights` of its parts for those of the parts of the pencil, without their spread."""

@@ -40,6 +40,7 @@ class Blocks(Places):
     """
 
     def _inner(self, row: np.ndarray, column: np.ndarray, inside: np.ndarray) -> tuple[tuple[int, int], np.ndarray]:
+        super()._inner(row, column, inside)  # compiled code takes it for a band
         edges = _edges(row, column, self.interior)
         sizes = np.diff(edges)
         ends = np.cumsum(sizes**2)

@@ -6,6 +6,7 @@
 The interior is factorised as a band (LAPACK gbtrf); the border follows by block elimination.
 """
 
+from contextlib import suppress
 from functools import cached_property
 from typing import Any
 
@@ -15,7 +16,7 @@ from scipy.sparse import csr_array
 
 from .stack import with_data
 
-_UNEVEN = 1e6  # largest entry of a sum above which its rows and columns are scaled
+UNEVEN = 1e6  # largest entry of a sum above which its rows and columns are scaled
 
 _FULL = {"f": (lapack.dgetrf, lapack.dgetri), "c": (lapack.zgetrf, lapack.zgetri)}
 _BAND = {"f": (lapack.dgbtrf, lapack.dgbtrs), "c": (lapack.zgbtrf, lapack.zgbtrs)}
@@ -104,7 +105,7 @@ class Bordered:
         Elsewhere the scales are None.
         """
         values, scales = self._matrix @ weights, None
-        if np.abs(values.view(float)).max(initial=0) > _UNEVEN:
+        if np.abs(values.view(float)).max(initial=0) > UNEVEN:
             scales = self._scales(np.abs(values))
             values *= scales[0][self.places.row] * scales[1][self.places.column]
         return self.places.blocks(values), scales
@@ -112,7 +113,7 @@ class Bordered:
     def sums(self, weights: Any) -> Any:
         """Return the blocks of the sums at many points, weights (parts, points), unscaled, and which are uneven."""
         values = np.ascontiguousarray((self._matrix @ weights).T)
-        return self.places.blocks(values), np.abs(values.view(float)).max(axis=1) > _UNEVEN
+        return self.places.blocks(values), np.abs(values.view(float)).max(axis=1) > UNEVEN
 
     def _scales(self, size: np.ndarray) -> np.ndarray:
         """Powers of two for rows and columns, (2, size), by the sizes of the entries."""
@@ -211,10 +212,13 @@ class ManyFactors:
 
     @cached_property
     def _border(self) -> np.ndarray:
-        try:
+        with suppress(np.linalg.LinAlgError):
             return np.linalg.inv(self._schur)
-        except np.linalg.LinAlgError:
-            return np.full_like(self._schur, np.nan)
+        inverse = np.full_like(self._schur, np.nan)
+        for one, schur in zip(inverse, self._schur, strict=True):
+            with suppress(np.linalg.LinAlgError):
+                one[:] = _inverse(schur)
+        return inverse
 
     def solve(self, f: Any) -> Any:
         """Return z with M z = f at every point."""

@@ -12,7 +12,6 @@ At many wavenumbers each has its own factorisation and all else is done together
 (size, points) then, and plain (size,) at one.
 """
 
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -20,10 +19,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import ModeLost
-from .stack import square
+from .arithmetic import size_of
 
 if TYPE_CHECKING:
-    from .bordered import Factors
+    from .arithmetic import Iterated
 
 _EPS = np.finfo(float).eps
 _TINY = np.finfo(float).tiny
@@ -32,6 +31,7 @@ _ROUNDS = 3  # of factorisations at many points
 _CORRECTIONS = 12
 VECTOR = 1e-9  # error of a vector, and so of the slope, that is accepted
 _ALONE = 40  # degree from which on a single eigenvalue is sought in what is condensed of a pencil: that takes a while
+_sum = np.add.reduce  # over the parts
 _OFFSET = 1e-3  # of a factorisation for corrections from its rate: it must not be singular
 
 
@@ -72,16 +72,17 @@ def refine(pencil: Any, weights: Any, rate: complex, x: np.ndarray | None = None
     """
     x, y = (_start(pencil.size) if vector is None else vector for vector in (x, y))
     inner, own, x, y = _inside(pencil.condensed if pencil.degree >= _ALONE else None, pencil, weights, x, y.conj())
-    b = inner.b_products(own.value)
+    arithmetic = inner.arithmetic
     for _ in range(_FACTORISATIONS):
         if pencil.real and not np.imag(rate):
             rate, x, y = np.real(rate), x.real, y.real
-        factors = _factors(inner, own.value, rate)
-        x, y, steps, settled = _iterate(b, factors, x, y, accuracy)
+        last = arithmetic.iterate(own.value, rate, x, y)
+        x, y = last.vectors
+        shares, settled = _judged(last, accuracy)
         if settled:
-            found = _quotient(pencil, weights, x, y, steps, settled, bars, (inner, own))
-            return _twice(pencil, weights, found, bars) if factors.uneven else found
-        rate = _rate(inner, own.value * inner.stack.brackets(y, inner.stack.times(x)))
+            found = _quotient(pencil, weights, x, y, last.steps, shares, settled, bars, (inner, own))
+            return _twice(pencil, weights, found, bars) if last.uneven else found
+        rate = _rate(inner, own.value * arithmetic.brackets(x, y))
         if not np.isfinite(rate):
             break
     raise ModeLost(f"inverse iteration near rate {complex(rate):.6g} did not settle")
@@ -95,26 +96,25 @@ def refine_many(pencil: Any, weights: Any, rate: np.ndarray | None, x: np.ndarra
     is the guess.
     """
     inner, own, x, y = _inside(pencil.condensed, pencil, weights, x.T, y.conj().T)
+    arithmetic = inner.arithmetic
     if rate is None:
-        rate = _rate(inner, own.value * inner.stack.brackets(y, inner.stack.times(x)))
+        rate = _rate(inner, own.value * arithmetic.brackets(x, y))
     if pencil.real and not np.any(np.imag(rate)):
         rate, x, y = rate.real, x.real, y.real
     x, y = (np.ascontiguousarray(vectors, np.result_type(vectors, rate)) for vectors in (x, y))
-    steps = [(np.zeros_like(vectors), np.zeros(len(rate))) for vectors in (x, y)]
+    steps, shares = (np.zeros_like(x), np.zeros_like(y)), np.zeros((2, len(rate)))
     settled, left = np.zeros(len(rate), bool), np.arange(len(rate))
     for _ in range(_ROUNDS):
-        value = own.value[:, left]
-        factors = inner.factors(value, rate[left])
-        x[:, left], y[:, left], last, settled[left] = _iterate(
-            inner.b_products(value), factors, x[:, left], y[:, left], accuracy)
-        for (step, share), (new, part) in zip(steps, last, strict=True):
-            step[:, left], share[left] = new, part
-        settled[left] &= ~factors.uneven
-        left = left[~settled[left] & ~factors.uneven]
+        last = arithmetic.iterate(own.value[:, left], rate[left], x[:, left], y[:, left])
+        parts, settled[left] = _judged(last, accuracy)
+        for whole, part in zip((x, y, *steps, shares), (*last.vectors, *last.steps, parts), strict=True):
+            whole[..., left] = part
+        settled[left] &= ~last.uneven
+        left = left[~settled[left] & ~last.uneven]
         if not len(left):
             break
-        rate = _rate(inner, own.value * inner.stack.brackets(y, inner.stack.times(x)))
-    return _quotient(pencil, weights, x, y, steps, settled, bars, (inner, own))
+        rate = _rate(inner, own.value * arithmetic.brackets(x, y))
+    return _quotient(pencil, weights, x, y, steps, shares, settled, bars, (inner, own))
 
 
 def _inside(condensed: Any, pencil: Any, weights: Any, x: np.ndarray, y: np.ndarray) -> tuple[Any, ...]:
@@ -124,35 +124,16 @@ def _inside(condensed: Any, pencil: Any, weights: Any, x: np.ndarray, y: np.ndar
     return condensed, condensed.weights(weights), *condensed.restricted(x, y)
 
 
-def _iterate(b: tuple[Callable[..., Any], ...], factors: Any, x: np.ndarray, y: np.ndarray,
-             accuracy: float) -> tuple[Any, ...]:
-    """Two inverse iterations from either side; return vectors, their last steps, and whether the quotient is settled.
+def _judged(last: "Iterated", accuracy: float) -> tuple[Any, ...]:
+    """The shares (2, ...) of the last steps of both vectors that steps to come would make, and whether the quotient is
+    settled.
 
-    `b` are the products with B from the right and from the left.
+    The second step shrinks what the first one changed by the ratio of the distances to the wanted and the next
+    eigenvalue, and so will the next.
     """
-    x, x_step, x_error = _iterated(b[0], factors.solve, x)
-    y, y_step, y_error = _iterated(b[1], factors.solve_left, y)
-    return x, y, (x_step, y_step), _settled(x_error, y_error, accuracy)
-
-
-def _iterated(b: Callable[..., Any], solve: Callable[..., Any], vector: np.ndarray) -> tuple[Any, ...]:
-    """Two inverse iterations with one factorisation; return the vector, the last step, and an estimate of the error.
-
-    The step comes with the share of it that steps to come would make.
-
-    Vectors are scaled by one component. The second step shrinks what the first one changed by the
-    ratio of the distances to the wanted and the next eigenvalue, and so will the next.
-    """
-    pivot = np.abs(vector).argmax(axis=0)
-    if vector.ndim > 1:
-        pivot = pivot, np.arange(vector.shape[1])
-    first = solve(b(vector))
-    start, first = vector / vector[pivot], first / first[pivot]
-    second = solve(b(first))
-    second = second / second[pivot]
-    last = second - first
-    change, error = _converging(last, second, _size(first - start) / _size(second))
-    return second, (last, error / np.maximum(change, _TINY)), error
+    first, step, size = last.sizes
+    change, error = _converging(step / size, first / size)
+    return error / np.maximum(change, _TINY), _settled(error[0], error[1], accuracy)
 
 
 def _twice(pencil: Any, weights: Any, found: "Eigen", bars: bool) -> "Eigen":
@@ -173,7 +154,7 @@ def _corrected(pencil: Any, weights: Any, found: "Eigen", bars: bool) -> "Eigen"
     value, stack, rate, x, y = weights.value, pencil.stack, found.rate, found.x, found.y.conj()
     if pencil.real and not np.imag(rate):
         rate, x, y = np.real(rate), x.real, y.real
-    factors = _factors(pencil, value, rate * (1 + _OFFSET))
+    factors = pencil.arithmetic.factors(value, rate * (1 + _OFFSET))
     bx, by = (product(vector) for product, vector in zip(pencil.b_products(value), (x, y), strict=True))
     along_x, along_y = x / (by @ x), y / (by @ x)
     x_change = y_change = x_error = y_error = 0.0
@@ -184,13 +165,13 @@ def _corrected(pencil: Any, weights: Any, found: "Eigen", bars: bool) -> "Eigen"
         dx, dy = factors.solve(stack.total(spread, products)), factors.solve_left(stack.total_left(spread, y))
         dx, dy = dx - along_x * (by @ dx), dy - along_y * (bx @ dy)
         x, y = x - dx, y - dy
-        x_change, x_error = _converging(dx, x, x_change)
-        y_change, y_error = _converging(dy, y, y_change)
+        x_change, x_error = _converging(size_of(dx) / size_of(x), x_change)
+        y_change, y_error = _converging(size_of(dy) / size_of(y), y_change)
         settled = _settled(x_error, y_error)
         if settled:
             break
-    steps = (dx, x_error / max(x_change, _TINY)), (dy, y_error / max(y_change, _TINY))
-    return _quotient(pencil, weights, x, y, steps, settled, bars)
+    shares = np.array([x_error / max(x_change, _TINY), y_error / max(y_change, _TINY)])
+    return _quotient(pencil, weights, x, y, (dx, dy), shares, settled, bars)
 
 
 @lru_cache(maxsize=32)
@@ -199,18 +180,8 @@ def _start(size: int) -> np.ndarray:
     return np.random.default_rng(1).standard_normal(size)
 
 
-def _factors(pencil: Any, weights: np.ndarray, rate: Any) -> "Factors":
-    for _ in range(3):
-        try:
-            return pencil.factors(weights, rate)
-        except np.linalg.LinAlgError:  # the rate is an eigenvalue to the last bit
-            rate = rate * (1 + 4 * _EPS) + _TINY
-    raise ModeLost(f"the equations are singular near the rate {complex(rate):.6g}")
-
-
-def _converging(step: np.ndarray, vectors: np.ndarray, before: Any) -> tuple[Any, ...]:
+def _converging(change: Any, before: Any) -> tuple[Any, ...]:
     """Relative length of the last step, and the error left, given the length of the step before."""
-    change = _size(step) / _size(vectors)
     return change, change**2 / np.maximum(np.maximum(change, before), _TINY) + _EPS
 
 
@@ -219,59 +190,55 @@ def _settled(x_error: Any, y_error: Any, accuracy: float = VECTOR) -> Any:
     return np.maximum(x_error, y_error) < accuracy
 
 
-def _size(vectors: np.ndarray) -> Any:
-    return np.sqrt(square(vectors).sum(axis=0) if vectors.ndim > 1 else np.vdot(vectors, vectors).real)
-
-
 def _rate(pencil: Any, value: np.ndarray) -> Any:
     """Rayleigh quotients from the brackets of all parts (parts, points)."""
-    return -value[: pencil.first_b].sum(axis=0) / value[pencil.first_b:].sum(axis=0)
+    return -_sum(value[: pencil.first_b]) / _sum(value[pencil.first_b:])
 
 
-def _quotient(pencil: Any, weights: Any, x: np.ndarray, y: np.ndarray, steps: Any, settled: Any, bars: bool,
-              inside: Any = None) -> "Eigen":
+def _quotient(pencil: Any, weights: Any, x: np.ndarray, y: np.ndarray, steps: Any, shares: Any, settled: Any,
+              bars: bool, inside: Any = None) -> "Eigen":
     """Rayleigh quotients of the pairs (y^H, x), (size, points) or of one (size,), with slope in k and errors.
 
-    `steps` are the last ones of both vectors, with the shares of them that steps to come would make. Both are vectors
-    `inside`: of a pencil and its weights.
+    `steps` are the last ones of both vectors, with the `shares` of them that steps to come would make. They and the
+    vectors are those `inside`, of the pencil or of what is condensed of it, with its weights.
     """
-    stack, first, (inner, own) = pencil.stack, pencil.first_b, inside or (pencil, weights)
-    pair = y, products = y, inner.stack.times(x)
+    arithmetic, (inner, own), squares = pencil.arithmetic, inside or (pencil, weights), None
     if inner is not pencil:
-        rate = _rate(inner, own.value * inner.stack.brackets(*pair))
+        rate, _, _, change = _slopes(own, inner.changes(x, y, *steps if bars else ()), inner.sides)
         x, y = inner.continued(weights.value * pencil.powers(rate), x, y)
-        products = stack.times(x)
-    brackets = stack.brackets(y, products)
-    value = weights.value * brackets
-    norm = -value[first:].sum(axis=0)  # y B x
-    rate = value[:first].sum(axis=0) / norm
-    power = pencil.powers(rate)
-    y = y / norm
-    slope = (weights.slope * brackets * power).sum(axis=0) / norm
-    spread = (weights.spread * np.abs(brackets * power)).sum(axis=0) / np.abs(norm)
+        brackets = arithmetic.brackets(x, y)[None]
+        rate, norm, slope, _ = _slopes(weights, brackets, pencil.layout.sides)
+        squares = pencil.stack.squares(y, x) if bars else None
+    else:
+        brackets, squares = arithmetic.changes(x, y, *steps) if bars else (arithmetic.brackets(x, y)[None], None)
+        rate, norm, slope, change = _slopes(weights, brackets, pencil.layout.sides)
+    power, size = pencil.powers(rate), abs(norm)
+    y, weighted = y / norm, weights.value * power
+    spread = _sum(weights.spread * abs(brackets[0] * power)) / size
     if bars and pencil.cuts:
-        spread += pencil.cut(weights.value * power, y, x)
-    variance, scatter, left = (np.zeros(norm.shape) for _ in range(3))
+        spread += pencil.cut(weighted, y, x)
+    scatter = left = rounding = np.zeros(norm.shape)
     if bars:
-        for (_, share), change in zip(steps, _changes(inner, own, slope, inner.powers(rate), (
-                pair[0] / norm, pair[1]), (steps[0][0], steps[1][0] / norm)), strict=True):
-            scatter, left = scatter + change, left + share * change
-        variance += stack.squares(weights.value * power, y, x)  # of matrix entries
-        variance += square(value * power).sum(axis=0) / square(norm)  # of the weights, common to a part
-    tail = np.abs(pencil.tail.total(pencil.tail.spread(weights.value * power), pencil.tail.times(x)))
-    beyond = tail.reshape(len(pencil.last), -1, *norm.shape).sum(axis=1)
-    truncation = (beyond * np.abs(y[pencil.last]).max(axis=1)).sum(axis=0)
+        scatter, left = _sum(change), _sum(shares * change)
+        variance = abs(weighted) ** 2 * (squares + abs(brackets[0]) ** 2)  # of entries, of weights common to a part
+        rounding = _EPS * np.sqrt(_sum(variance)) / size
+    tail = abs(arithmetic.beyond(weighted, x)).reshape(len(pencil.last), -1, *norm.shape)
+    truncation = _sum(tail.sum(axis=1) * abs(y[pencil.last]).max(axis=1))
     right, adjoint = (np.ascontiguousarray(rows.T) for rows in (x, y.conj()))
-    return Eigen(rate, slope, truncation, _EPS * np.sqrt(variance), spread, scatter, left, right, adjoint, settled)
+    return Eigen(rate, slope, truncation, rounding, spread, scatter, left, right, adjoint, settled)
 
 
-def _changes(pencil: Any, weights: Any, slope: Any, power: Any, pair: Any, steps: Any) -> Iterator[Any]:
-    """Yield what steps dx and dy of the vectors of a `pair` (y, products with x), y B x = 1, do to the slope in k.
+def _slopes(weights: Any, brackets: np.ndarray, sides: np.ndarray) -> tuple[Any, ...]:
+    """The rate, y B x, the slope s and what steps of the vectors do to that, None without any.
 
-    With s = y L' x / (y B x), where L' is the derivative of A - rate B in k at a fixed rate, a change of x by dx makes
-    ds = y (L' - s B) dx, and one of y the same from the left. The rate does not change, to first order.
+    `brackets` (1 or 3, parts, ...) are those of x and y, of dx and y, and of x and dy. The slope is
+    s = y L' x / (y B x), where L' is the derivative of A - rate B in k at a fixed rate: a change of x by dx makes
+    ds = y (L' - s B) dx / (y B x), and one of y the same from the left. The rate does not change, to first order.
     """
-    (y, products), (dx, dy), stack = pair, steps, pencil.stack
-    for brackets in (stack.brackets(y, stack.times(dx)), stack.brackets(dy, products)):
-        shift = (weights.value * brackets)[pencil.first_b:].sum(axis=0)  # -y B dx
-        yield np.abs((weights.slope * brackets * power).sum(axis=0) + slope * shift)
+    products = np.array((weights.value, weights.slope))[:, None] * brackets
+    of_value, of_slope = np.add.reduceat(products, sides, axis=2)  # sums over the parts of A, of -B
+    norm = -of_value[0, 1]  # y B x
+    rate = of_value[0, 0] / norm
+    slopes = (of_slope[:, 0] + rate * of_slope[:, 1]) / norm
+    change = abs(slopes[1:] + slopes[0] * of_value[1:, 1] / norm) if len(slopes) > 1 else None
+    return rate, norm, slopes[0], change

@@ -29,17 +29,24 @@ class Lines:
         self.part, self.row = key[first] // shape[0], shape[0] - 1 - key[first] % shape[0]
         self._places = csr_array((np.zeros(len(key)), column[self._order], np.append(first, len(key))),
                                  (len(first), shape[1]))
-        self._parts, self._rows = parts, shape[0]
+        self._parts, self.rows = parts, shape[0]
 
     def matrix(self, value: np.ndarray) -> Any:
         """The sparse matrix (lines, columns) of entries with these values (entries,)."""
         return with_data(self._places, value[self._order])
 
+    @cached_property
+    def addresses(self) -> tuple[int, ...]:
+        """Of part, row, first entry and columns of the lines, as integers of C: compiled code reads them there."""
+        self._in_c = [np.ascontiguousarray(index, np.intc) for index in
+                      (self.part, self.row, self._places.indptr, self._places.indices)]
+        return tuple(index.ctypes.data for index in self._in_c)
+
     def to_rows(self, values: np.ndarray) -> np.ndarray:
         """Sums of the values (lines, ...) of each row, (rows, ...)."""
         if self._by_row is not None:
             return self._by_row @ values
-        total = np.zeros((self._rows, *values.shape[1:]), values.dtype)
+        total = np.zeros((self.rows, *values.shape[1:]), values.dtype)
         total[self.row] = values
         return total
 
@@ -49,7 +56,7 @@ class Lines:
         count = len(self.row)
         if len(np.unique(self.row)) == count:
             return None
-        return csc_array((np.ones(count), self.row, np.arange(count + 1)), (self._rows, count))
+        return csc_array((np.ones(count), self.row, np.arange(count + 1)), (self.rows, count))
 
     def to_parts(self, values: np.ndarray) -> np.ndarray:
         """Sums of the values (lines, ...) of each part, (parts, ...), a block of lines at a time.
@@ -74,7 +81,12 @@ class Stack:
     """Matrices whose entries lie where `lines` says and have the values `value` (entries,)."""
 
     def __init__(self, lines: "Lines", value: np.ndarray) -> None:
-        self._lines, self._matrix = lines, lines.matrix(value)
+        self.lines, self._matrix = lines, lines.matrix(value)
+
+    @property
+    def data(self) -> np.ndarray:
+        """The values in the order of the lines, (entries,)."""
+        return self._matrix.data
 
     @cached_property
     def _transposed(self) -> Any:
@@ -86,7 +98,7 @@ class Stack:
 
     def full(self, weights: np.ndarray) -> np.ndarray:
         """The sum of the parts times weights (parts,), (rows, columns)."""
-        return self._lines.to_rows(self.spread(weights)[:, None] * self._matrix.toarray())
+        return self.lines.to_rows(self.spread(weights)[:, None] * self._matrix.toarray())
 
     def times(self, x: np.ndarray) -> np.ndarray:
         """Products of every part with x: (lines, points), for the methods below."""
@@ -94,15 +106,15 @@ class Stack:
 
     def spread(self, weights: np.ndarray) -> np.ndarray:
         """Weights (parts, points) of the lines: (lines, points), for the methods below."""
-        return weights[self._lines.part]
+        return weights[self.lines.part]
 
     def total(self, spread: np.ndarray, products: np.ndarray) -> np.ndarray:
         """Sum over the parts, weights times products with x: (rows, points)."""
-        return self._lines.to_rows(spread * products)
+        return self.lines.to_rows(spread * products)
 
     def total_left(self, spread: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Sum over the parts, weights times y^T part: (columns, points)."""
-        return self._transposed @ (spread * y[self._lines.row])
+        return self._transposed @ (spread * y[self.lines.row])
 
     def summed(self, weights: np.ndarray) -> tuple[Callable[..., Any], ...]:
         """Products of the sum of the parts, times weights (parts, ...), with vectors: functions of x, and of y."""
@@ -111,11 +123,11 @@ class Stack:
 
     def brackets(self, y: np.ndarray, products: np.ndarray) -> np.ndarray:
         """y^T part x for every part: (parts, points)."""
-        return self._lines.to_parts(y[self._lines.row] * products)
+        return self.lines.to_parts(y[self.lines.row] * products)
 
-    def squares(self, weights: np.ndarray, y: np.ndarray, x: np.ndarray) -> Any:
-        """Sum over the entries of all parts of |weight y_i entry_ij x_j|^2: (points,)."""
-        return (self.spread(square(weights)) * square(y)[self._lines.row] * (self._squares @ square(x))).sum(axis=0)
+    def squares(self, y: np.ndarray, x: np.ndarray) -> Any:
+        """Sums over the entries of every part of |y_i entry_ij x_j|^2: (parts, points)."""
+        return self.lines.to_parts(square(y)[self.lines.row] * (self._squares @ square(x)))
 
 
 def with_data(matrix: Any, data: np.ndarray) -> Any:

@@ -1,0 +1,96 @@
+"""What refining an eigenvalue takes of a pencil: two inverse iterations from either side, and products of its parts.
+
+`refine` says what is iterated and judges it; how the numbers come about is said here, with numpy and scipy, and in
+`kernel`, compiled. Vectors are arrays (size,) at one point and (size, points) at many, weights (parts,) and
+(parts, points), rates numbers and (points,). A left vector is y^H.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..errors import ModeLost
+from .stack import square
+
+_EPS = np.finfo(float).eps
+_TINY = np.finfo(float).tiny
+
+
+@dataclass(slots=True)
+class Iterated:
+    """Right and left `vectors` after two inverse iterations, and their last `steps`.
+
+    `sizes` (3, 2, ...) are those of the first step, the last step and the vector of either. Vectors are scaled
+    by one component. `uneven` tells where the matrix needs scales: at many points nothing holds there.
+    """
+
+    vectors: tuple[np.ndarray, ...]
+    steps: tuple[np.ndarray, ...]
+    sizes: np.ndarray
+    uneven: Any
+
+
+class Arithmetic:
+    """The numbers of one `pencil`, with numpy and scipy: all points at once."""
+
+    def __init__(self, pencil: Any) -> None:
+        self._pencil = pencil
+
+    def iterate(self, weights: np.ndarray, rate: Any, x: np.ndarray, y: np.ndarray) -> "Iterated":
+        """Two inverse iterations from either side with one factorisation of A - rate B.
+
+        At one point raises ModeLost where it stays singular, however slightly the rate is changed.
+        """
+        factors = self._pencil.factors(weights, rate) if np.ndim(rate) else self.factors(weights, rate)
+        right, left = self._pencil.b_products(weights)
+        x, dx, x_sizes = _iterated(right, factors.solve, x)
+        y, dy, y_sizes = _iterated(left, factors.solve_left, y)
+        return Iterated((x, y), (dx, dy), np.array((x_sizes, y_sizes)).swapaxes(0, 1), factors.uneven)
+
+    def factors(self, weights: np.ndarray, rate: Any) -> Any:
+        """LU factors of A - rate B at one point, next to the rate where that is an eigenvalue to the last bit."""
+        for _ in range(3):
+            try:
+                return self._pencil.factors(weights, rate)
+            except np.linalg.LinAlgError:
+                rate = rate * (1 + 4 * _EPS) + _TINY
+        raise ModeLost(f"the equations are singular near the rate {complex(rate):.6g}")
+
+    def brackets(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """y^T part x for every part: (parts,) or (parts, points)."""
+        return self._pencil.stack.brackets(y, self._pencil.stack.times(x))
+
+    def changes(self, x: np.ndarray, y: np.ndarray, dx: np.ndarray, dy: np.ndarray) -> tuple[np.ndarray, ...]:
+        """The `brackets` of x and y, of dx and y, and of x and dy: (3, parts, ...).
+
+        With them the sums of |y_i entry_ij x_j|^2 of every part, (parts, ...).
+        """
+        stack = self._pencil.stack
+        products = stack.times(x)
+        pairs = (y, products), (y, stack.times(dx)), (dy, products)
+        return np.array([stack.brackets(*pair) for pair in pairs]), stack.squares(y, x)
+
+    def beyond(self, weights: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """The rows beyond the truncation, weights times parts, times x: (rows,) or (rows, points)."""
+        tail = self._pencil.tail
+        return tail.total(tail.spread(weights), tail.times(x))
+
+
+def _iterated(b: Callable[..., Any], solve: Callable[..., Any], vector: np.ndarray) -> tuple[Any, ...]:
+    """Two inverse iterations from one side; the vector, its last step, and the sizes of both steps and of it."""
+    pivot = np.abs(vector).argmax(axis=0)
+    if vector.ndim > 1:
+        pivot = pivot, np.arange(vector.shape[1])
+    first = solve(b(vector))
+    start, first = vector * (1 / vector[pivot]), first * (1 / first[pivot])
+    second = solve(b(first))
+    second = second * (1 / second[pivot])
+    last = second - first
+    return second, last, (size_of(first - start), size_of(last), size_of(second))
+
+
+def size_of(vectors: np.ndarray) -> Any:
+    """Lengths of vectors (size, points), or of one (size,)."""
+    return np.sqrt(square(vectors).sum(axis=0) if vectors.ndim > 1 else np.vdot(vectors, vectors).real)

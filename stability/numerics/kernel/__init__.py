@@ -1,0 +1,1 @@
+"""Refinement by compiled code, where the extra `fast` is installed."""
