@@ -4,6 +4,7 @@ Independent of any resolution. Terms are kept as (unknown, monomial, series): th
 multiplies the unknown (or its s-derivative, marked ') and a product of scalar symbols such as k^2 rate.
 """
 
+from cmath import isfinite
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
@@ -259,7 +260,8 @@ def _check_conditions(flow: Any, given: tuple[Any, ...]) -> None:
             raise ParameterError(f"{flow.name}: condition {number} has no unknown: it is to be a sum such as "
                                  f"edge.v + names.k * edge.w, that is 0 (got {shown(getattr(form, 'terms', form))})")
         for names, coefficient in form.terms.items():
-            if np.shape(coefficient) or not np.isfinite(coefficient):
+            if not (isinstance(coefficient, int | float | complex) and isfinite(coefficient)) and (
+                    np.shape(coefficient) or not np.isfinite(coefficient)):
                 raise ParameterError(f"{flow.name}: condition {number}: the coefficient of {'*'.join(names)} must be a "
                                      f"finite number (got {shown(coefficient)})")
         terms = {names: value for names, value in form.terms.items() if value}

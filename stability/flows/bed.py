@@ -24,6 +24,7 @@ from numpy.polynomial import chebyshev as C
 
 from ..equations.layer import FIELDS, Layer, Profile
 from ..errors import ParameterError
+from ..numerics.chebyshev import at_points
 from ..numerics.smooth import Rough, fit
 from .base import parameter
 from .law import Law
@@ -84,7 +85,8 @@ class Creeping:
     def at(self, law: Law, tau: float, s: Any) -> tuple[Any, Any, Any, Any]:
         """zeta, I, -dzeta/ds and mu'(I) at the points s."""
         fall = np.log(self.high / self.low)
-        inertial = np.clip(self.low * np.exp(fall * s), self.low, np.nextafter(self.high, 0))  # this side of breaks
+        inertial = np.maximum(self.low * np.exp(fall * s), self.low)
+        inertial = np.minimum(inertial, np.nextafter(self.high, 0))  # this side of breaks
         mu = law.mu(inertial)
         zeta, slope = np.sqrt(tau / mu), law.slope(inertial)
         return zeta, inertial, zeta * slope * inertial * fall / (2 * mu), slope
@@ -99,9 +101,14 @@ class Piece:
     low: float  # velocity at the lower edge
     series: Any  # of the velocity above it
 
+    def velocity(self, s: Any) -> Any:
+        """U at the points s."""
+        many = isinstance(s, np.ndarray) and s.ndim == 1
+        return self.low + (at_points(s, self.series) if many else C.chebval(2 * s - 1, self.series))
+
     @property
     def top(self) -> float:
-        return self.low + float(C.chebval(1.0, self.series))
+        return float(self.velocity(1.0))
 
 
 @lru_cache(maxsize=512)
@@ -186,7 +193,7 @@ def profile(law: Law, tau: float, piece: Piece, inertia: float = 1.0) -> Callabl
         return Profile(
             dz=2 * stretch * zeta,
             rho=inertia,
-            U=piece.low + C.chebval(2 * s - 1, piece.series),
+            U=piece.velocity(s),
             dU=shear_rate,
             eta=eta,
             beta=slope * zeta,

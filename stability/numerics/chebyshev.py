@@ -13,6 +13,7 @@ import numpy as np
 from numpy.polynomial import chebyshev as C
 
 FEW = 4  # coefficients of a series that an entry of its matrix depends on
+_BESIDE = 32  # polynomials kept for a series of up to so many terms, or a multiple
 CHOP = 8 * np.finfo(float).eps  # of the largest coefficient of a series: less is taken for rounding
 
 
@@ -61,6 +62,17 @@ def values(series: Any) -> Any:
     waves = np.zeros((*series.shape[:-1], count + 1), complex)
     waves[..., :count] = series / _twist(count)
     return np.fft.irfft(waves)[..., count - 1:: -1]
+
+
+def at_points(s: np.ndarray, series: np.ndarray) -> np.ndarray:
+    """A T-series at the points 0 <= s <= 1 (points,); their polynomials are kept, since many series have the same."""
+    most = -(-len(series) // _BESIDE) * _BESIDE
+    return _polynomials(np.ascontiguousarray(s, float).tobytes(), most)[:, :len(series)] @ series
+
+
+@lru_cache(maxsize=8)
+def _polynomials(s: bytes, count: int) -> np.ndarray:
+    return C.chebvander(2 * np.frombuffer(s) - 1, count - 1)
 
 
 @lru_cache(maxsize=8)
