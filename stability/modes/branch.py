@@ -125,8 +125,9 @@ class Branch:
             if len(nodes) > 1 and k != near.k:
                 degree = self.solver.next_degree(known) if known else 0
                 degree = max(degree, *(self.solver.likely_degree(node) for node in nodes[index: index + 2]))
-                (rate,), (x,), (y,) = interpolated(self.solver, nodes, index, np.log([k]), degree)
-                mode = self._solved(k, rate, (degree, x, y))
+                own = max(node.degree for node in nodes[index: index + 2])
+                (rate,), (x,), (y,) = interpolated(self.solver, nodes, index, np.log([k]), own)
+                mode = self._solved(k, rate, (own, x, y), degree)
                 if mode and _near(mode, rate, near) and abs(self.solver.overlap(near, mode) - 1) < _ASTRAY:
                     return mode
             mode = self._solved(near.k, near.rate, (near.degree, near.x, near.y)) or near
@@ -134,9 +135,10 @@ class Branch:
         except ModeLost as reason:
             return reason
 
-    def _solved(self, k: float, rate: complex, vectors: tuple[int, np.ndarray, np.ndarray]) -> "Mode | None":
+    def _solved(self, k: float, rate: complex, vectors: tuple[int, np.ndarray, np.ndarray],
+                degree: int | None = None) -> "Mode | None":
         try:
-            return self.solver.solve(k, rate, vectors)
+            return self.solver.solve(k, rate, vectors, degree)
         except ModeLost:
             return None
 

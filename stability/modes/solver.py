@@ -28,6 +28,7 @@ _FAR_BELOW = 1e-15  # relative truncation error that is aimed at with the defaul
 _OVERSOLVED = 1e-7  # truncation over rounding below which one rung less of the degree suffices as well
 _VECTOR, _ROUGHEST = 0.01, 1e-6  # error of vectors without bars, in units of the tolerance; the largest
 _SCATTER = 40.0  # error of a slope from vectors right to rounding, in units of error times 1 or 1/k (measured)
+_LEAP = 1e-3  # error of vectors after a leap, over the usual one: there was no step before it to bring them near
 _BLIND = 12  # degree to try first where nothing is known
 _LEAST = 24  # degree of the smallest table of entries
 _DECADES = 3.0  # that coefficients span at most where only structure counts: eigenvalues stand out from rounding
@@ -192,7 +193,9 @@ class Solver:
         while True:
             pencil = self.pencil(degree)
             x, y = transfer(self, vectors, degree) if vectors else (None, None)
-            eigen = refine(pencil, self.weights(k), rate, x, y, self.bars, self.vectors)
+            leap = vectors and self.degrees.index(degree) > self.degrees.index(vectors[0]) + 1
+            accuracy = self.vectors * (_LEAP if leap else 1.0)
+            eigen = refine(pencil, self.weights(k), rate, x, y, self.bars, accuracy)
             mode = self._mode(k, degree, eigen)
             if glance or degree == self.degrees[-1] or self.fits(mode):
                 return mode
