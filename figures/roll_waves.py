@@ -25,7 +25,8 @@ def compute(fast):
     for long_wave, kind in ((True, "long-wave threshold"), (False, "onset")):
         sweep = (flows.RollWave(slope_deg=float(slope), Fr2=3.0) for slope in slopes)
         rows += [(kind, point.flow.slope_deg, point.k, point.flow.froude)
-                 for point in critical_sweep(sweep, "Fr2", long_wave=long_wave) if point.status == "resolved"]
+                 for point in critical_sweep(sweep, "Fr2", span=(1.0, 10.0), long_wave=long_wave)
+                 if point.status == "resolved"]
     for slope in SLOPES:
         flow = flows.RollWave(slope_deg=slope, Fr2=3.0)
         curve = neutral_curve(flow, "Fr2", np.array([0.02, 1.3]))

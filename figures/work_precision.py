@@ -7,8 +7,9 @@ eigenvalue of a sweep of 201 wavenumbers, everything included; dense solves of t
 sweep and are timed alone. The thin dashed curve is the error that the collocation method itself reports. The lower row
 asks for a single eigenvalue of a flow that nothing is known of (full curves), and for one eigenvalue of each flow in a
 loop over 21 values of a parameter (dotted curves, time for each): this package by the tolerance asked for, solve_bvp by
-its residual, even modes by a Galerkin script, and the package dmsuite where it is installed, else as it was measured
-last (columns machine and versions). Run time: about 5 minutes on one core, 30 s with --fast; ratios of times are worth
+its residual, even modes by a Galerkin script, and the packages dmsuite and Dedalus 3 (in the loop by its sparse solver,
+next to the eigenvalue before) where they are installed, else as they were measured last (columns machine and
+versions). Run time: about 5 minutes on one core, 30 s with --fast; ratios of times are worth
 more than times.
 """
 
@@ -43,7 +44,7 @@ LOOPS = {"vortex": ("slope_deg", 20.0, 40.0), "dune": ("shields", 1.5, 2.5), "po
 VALUES = 21  # of the parameter, the flow itself in the middle
 TOLERANCES = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 RESIDUALS = (1e-3, 1e-4, 1e-5, 1e-6)
-PEER = "dmsuite"
+PEERS = "dmsuite", "dedalus"
 STYLES = {
     "collocation": (BLUE, "o", "collocation, this package"),
     "bvp": (RED, "s", "solve_bvp continuation, this package"),
@@ -55,7 +56,8 @@ STYLES = {
     "textbook delta 1e-2": (GREY, "v", r"textbook, $\delta$ = 10$^{-2}$"),
     "textbook delta 1e-4": (GREY, ">", r"textbook, $\delta$ = 10$^{-4}$"),
     "even Galerkin": (PURPLE, "P", "Galerkin script for even modes"),
-    PEER: (ORANGE, "*", "dmsuite (Weideman & Reddy 2000)"),
+    "dmsuite": (ORANGE, "*", "dmsuite (Weideman & Reddy 2000)"),
+    "dedalus": (RED, "h", "Dedalus 3 (Burns et al. 2020)"),
 }
 
 
@@ -79,11 +81,11 @@ def compute(fast):
     names = ("problem", "method", "setting", "error", "reported", "seconds", "unknowns", "question")
     machine = f"{platform.machine()}, one thread, Python {platform.python_version()}"
     versions = ", ".join(f"{name} {installed(name)}" for name in ("granular-stability", "numpy", "scipy"))
-    peer = f"{versions}, {PEER} {installed(PEER)}"
+    peers = {name: f"{versions}, {name} {installed(name)}" for name in PEERS}
     rows = [(*row, "sweep") if len(row) < len(names) else row for row in rows]
     data = {**dict(zip(names, zip(*rows, strict=True), strict=True)), "machine": [machine] * len(rows),
-            "versions": [peer if row[1] == PEER else versions for row in rows]}
-    return data if installed(PEER) else {name: [*data[name], *kept] for name, kept in measured_before(data).items()}
+            "versions": [peers.get(row[1], versions) for row in rows]}
+    return {name: [*data[name], *kept] for name, kept in measured_before(data).items()}
 
 
 def installed(package):
@@ -95,10 +97,10 @@ def installed(package):
 
 
 def measured_before(names):
-    """Columns of the rows of the peer in the file that is there."""
+    """Columns of the rows of peers that are not installed, in the file that is there."""
     path = Path(__file__).with_suffix(".csv")
     with open(path, encoding="utf-8", newline="") as file:
-        rows = [row for row in csv.DictReader(file) if row["method"] == PEER]
+        rows = [row for row in csv.DictReader(file) if row["method"] in PEERS and not installed(row["method"])]
     return {name: [row[name] for row in rows] for name in names}
 
 
@@ -147,9 +149,23 @@ def scripts(flow, k, fast):
         along, whole = timed(lambda: competitors.EvenGalerkin(n).followed(points))  # noqa: B023
         for question, c, time in ("single", found[0], seconds), ("loop", along[VALUES // 2], whole / VALUES):
             yield "even Galerkin", f"n {n}", -1j * k * c, np.nan, time, n, question
-    for n in (32, 40, 48, 56, 64, 80, 96)[:: 2 if fast else 1] if installed(PEER) else ():
-        values, seconds = timed(lambda: competitors.poiseuille_dmsuite(flow.Re, k, n))  # noqa: B023
-        yield PEER, f"n {n}", values, np.nan, seconds, n, "single"
+    for n in (32, 40, 48, 56, 64, 80, 96)[:: 2 if fast else 1]:
+        if installed("dmsuite"):
+            values, seconds = timed(lambda: competitors.poiseuille_dmsuite(flow.Re, k, n))  # noqa: B023
+            yield "dmsuite", f"n {n}", values, np.nan, seconds, n, "single"
+        if installed("dedalus"):
+            values, seconds = timed(lambda: competitors.poiseuille_dedalus(flow.Re, k, n))  # noqa: B023
+            yield "dedalus", f"n {n}", values, np.nan, seconds, n, "single"
+            along, whole = timed(lambda: dedalus_loop(points, n))  # noqa: B023
+            yield "dedalus", f"n {n}", along[VALUES // 2], np.nan, whole / VALUES, n, "loop"
+
+
+def dedalus_loop(points, n):
+    """The eigenvalue at each of the points (Re, k), each next to the one before, the first next to the exact one."""
+    found = [POISEUILLE]
+    for Re, k in points:
+        found.append(competitors.poiseuille_dedalus(Re, k, n, found[-1])[0])
+    return found[1:]
 
 
 def judged(found, exact):
@@ -217,8 +233,9 @@ def draw(data):
         for axis in (upper, lower):
             for digits in DIGITS:
                 axis.axhline(10.0**-digits, color=GREY, linewidth=0.5, linestyle=":", zorder=1)
-                axis.text(1.0, 10.0**-digits, f"{digits} digits", fontsize=7, color=GREY, ha="right", va="bottom",
-                          transform=axis.get_yaxis_transform())
+                if panel == panels[-1]:
+                    axis.text(1.02, 10.0**-digits, f"{digits} digits", fontsize=7, color=GREY, va="center",
+                              transform=axis.get_yaxis_transform())
         upper.set_title(panel, fontsize=9)
         lower.set_xlabel("CPU seconds per eigenvalue")
     for axis, which in zip(axes[:, 0], ("a sweep over wavenumbers", "one alone; dotted: in a loop over a parameter"),

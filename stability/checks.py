@@ -1,12 +1,16 @@
-"""What a user may pass: numbers, wavenumbers, accuracy, names of files. Anything else is refused in one line."""
+"""What a user may pass: numbers, wavenumbers, accuracy, names of files. Anything else is refused in one line.
+
+What the command line passes, texts, needs no numerics to be looked at.
+"""
 
 import os
 from math import inf
-from typing import Any
-
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 from .errors import ParameterError
+
+if TYPE_CHECKING:
+    import numpy as np
 
 LARGEST = 1e20  # of a parameter or wavenumber, and 1/LARGEST the smallest beside 0: products of several stay finite
 
@@ -17,7 +21,7 @@ def as_number(value: Any) -> float | None:
     """The value as a float, or None if it is no real number: text and zero-dimensional arrays may be."""
     if type(value) is float:
         return value
-    if isinstance(value, complex) or np.iscomplexobj(value) or value is np.ma.masked or np.ndim(value):
+    if not isinstance(value, str | int) and not _is_real_scalar(value):
         return None
     try:
         return float(value)
@@ -25,6 +29,12 @@ def as_number(value: Any) -> float | None:
         return inf if value > 0 else -inf
     except (TypeError, ValueError):
         return None
+
+
+def _is_real_scalar(value: Any) -> bool:
+    import numpy as np
+
+    return not (isinstance(value, complex) or np.iscomplexobj(value) or value is np.ma.masked or np.ndim(value))
 
 
 def in_double_precision(number: float) -> bool:
@@ -40,6 +50,8 @@ def shown(value: Any, number: Any = None) -> Any:
 
 def flat(values: Any, name: str) -> list[float]:
     """One value or a sequence of them as a list; what has more dimensions is refused, or its shape would be lost."""
+    import numpy as np
+
     array = values if isinstance(values, np.ndarray) else np.asarray(values, dtype=object)
     if array.ndim > 1:
         raise ParameterError(f"{name} must be a number or a sequence of numbers (got shape {array.shape}): flatten it, "
@@ -47,9 +59,15 @@ def flat(values: Any, name: str) -> list[float]:
     return array.ravel().tolist()
 
 
-def check_wavenumbers(k: Any, name: str = "k") -> np.ndarray:
+def check_wavenumbers(k: Any, name: str = "k") -> "np.ndarray":
     """Return k, a number or a sequence, as a float array (points,), or raise a ParameterError."""
-    values = flat(k, name)
+    import numpy as np
+
+    return np.array(_positive(flat(k, name), name))
+
+
+def _positive(values: list[Any], name: str) -> list[float]:
+    """Return values as wavenumbers, or raise a ParameterError."""
     if not values:
         raise ParameterError(f"{name}: give at least one wavenumber")
     numbers = [as_number(value) for value in values]
@@ -59,7 +77,7 @@ def check_wavenumbers(k: Any, name: str = "k") -> np.ndarray:
         if not in_double_precision(number):
             raise ParameterError(f"{name} must lie between {1 / LARGEST:g} and {LARGEST:g} for double precision: "
                                  f"change the scales (got {number:g})")
-    return np.array(numbers)
+    return [number for number in numbers if number is not None]
 
 
 def check_wavenumber(k: Any, name: Any = "k") -> Any:
@@ -95,6 +113,8 @@ def check_options(name: str, value: str, options: tuple[Any, ...]) -> str:
 
 def check_flag(name: str, value: bool) -> bool:
     """Return True or False, or raise a ParameterError."""
+    import numpy as np
+
     if not isinstance(value, bool | np.bool_):
         raise ParameterError(f"{name} must be True or False (got {shown(value)})")
     return bool(value)
@@ -102,7 +122,8 @@ def check_flag(name: str, value: bool) -> bool:
 
 def check_range(values: Any, name: Any) -> Any:
     """Return two positive numbers low < high as a tuple of floats, or raise a ParameterError."""
-    numbers = check_wavenumbers(values, name).tolist()
+    texts = isinstance(values, list) and all(isinstance(value, str) for value in values)
+    numbers = _positive(values if texts else flat(values, name), name)
     if len(numbers) != 2 or not numbers[0] < numbers[1]:
         raise ParameterError(f"{name}: give a range (low, high) of positive numbers (got {shown(values)})")
     return numbers[0], numbers[1]

@@ -5,6 +5,7 @@
     poiseuille(Re, k, n)                             clamped fourth-order collocation
     cut_response(k, Re, height, n)                   wall stress of a fluid cut at a height
     poiseuille_dmsuite(Re, k, n)                     the same matrices from the package dmsuite, where it is installed
+    poiseuille_dedalus(Re, k, n, near)               velocities and pressure in Dedalus 3, where it is installed
     EvenGalerkin(n)                                  even modes alone, n Legendre functions, one mode followed
 
 Each but the last returns all finite eigenvalues sigma of exp(i k x + sigma t), or the response. With P and W the
@@ -151,6 +152,41 @@ def poiseuille_dmsuite(Re, k, n):
     laplace = D2 - k**2 * eye
     A = (D4 - 2 * k**2 * D2 + k**4 * eye) / Re - 2j * k * eye - 1j * k * np.diag(1 - y**2) @ laplace
     return finite(A, laplace)
+
+
+def poiseuille_dedalus(Re, k, n, near=None):
+    """Velocities and pressure in n Chebyshev coefficients by Dedalus 3 (Burns et al. 2020): all eigenvalues by its
+    dense solver, or the one nearest to `near` by its sparse one."""
+    import dedalus.public as d3
+
+    axis = d3.Coordinate("z")
+    space = d3.Distributor(axis, dtype=np.complex128)
+    basis = d3.ChebyshevT(axis, n, bounds=(-1, 1))
+    z, slopes = space.local_grid(basis), basis.derivative_basis(1)
+    names = {name: space.Field(name=name, bases=basis) for name in ("p", "u", "w", "U", "dU")}
+    names |= {name: space.Field(name=name) for name in ("sigma", "a", "b", "c", "d")}
+    names["U"]["g"], names["dU"]["g"] = 1 - z**2, -2 * z
+
+    def slope(field):
+        return d3.Differentiate(field, axis)
+
+    def lift(constant):
+        return d3.Lift(constant, slopes, -1)
+
+    names |= {"slope": slope, "lift": lift, "ik": 1j * k, "kk": k**2, "nu": 1 / Re,
+              "uz": slope(names["u"]) + lift(names["a"]), "wz": slope(names["w"]) + lift(names["b"])}
+    unknowns = [names[name] for name in ("p", "u", "w", "a", "b", "c", "d")]
+    problem = d3.EVP(unknowns, eigenvalue=names["sigma"], namespace=names)
+    for equation in ("ik*u + wz = 0", "u(z=-1) = 0", "u(z=1) = 0", "w(z=-1) = 0", "w(z=1) = 0",
+                     "sigma*u + ik*U*u + dU*w + ik*p - nu*slope(uz) + nu*kk*u + lift(c) = 0",
+                     "sigma*w + ik*U*w + slope(p) - nu*slope(wz) + nu*kk*w + lift(d) = 0"):
+        problem.add_equation(equation)
+    solver = problem.build_solver()
+    if near is None:
+        solver.solve_dense(solver.subproblems[0])
+    else:
+        solver.solve_sparse(solver.subproblems[0], 1, near)
+    return solver.eigenvalues[np.isfinite(solver.eigenvalues)]
 
 
 class EvenGalerkin:

@@ -36,7 +36,7 @@ import references
 from stability import NotResolved, ParameterError, StabilityError, dispersion, k_max, spectrum
 from stability.cli import main as command
 from stability.flows import FLOWS
-from stability.flows.base import numeric
+from stability.flows.rules import numeric
 from stability.studies.critical import critical
 
 BUDGET = 20.0  # seconds of CPU that a point may take

@@ -45,7 +45,7 @@ def _run(words: list[str]) -> int:
                 raise _unknown(option, hint) from None
         raise
     if unknown:
-        from .common import nearest_flag
+        from .asked import nearest_flag
 
         raise _unknown(unknown[0], _near(parser, words, unknown[0]) or nearest_flag(arguments, unknown[0]))
     return arguments.run(arguments)
@@ -58,7 +58,7 @@ def _unknown(text: str, hint: str) -> ParameterError:
 
 def _near(parser: "_Parser", words: list[str], option: str) -> str:
     """A hint at the option of the verb that is meant, if one is near."""
-    from .common import nearest_option
+    from .asked import nearest_option
 
     return nearest_option(option, _options(parser, words))
 

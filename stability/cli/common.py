@@ -1,32 +1,25 @@
-"""What the verbs share: flows and their flags, common options, and the report of a result."""
+"""What the verbs share: common options, and the report of a result."""
 
 import argparse
 import os
 from collections.abc import Callable, Iterator
-from dataclasses import fields, replace
 from math import degrees
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..checks import as_number
 from ..errors import ParameterError
-from ..flows import find
-from ..flows.base import allowed, check_flow, numeric
-from ..flows.catalogue import nearest
 from ..modes.accuracy import DEGREES, TOLERANCE, check_accuracy
 from ..output.columns import explained
-from ..output.text import check_writable, render, whole_file
 from ..status import is_interrupted, is_settled
+from .asked import add_parameters, given
 from .names import FLOW, flag_of
 from .plotting import look_of, plot_options
 from .progress import Bar
-from .specs import parse_spec
 from .streams import output_closed, put, say, terminal_width
 from .verbs import VERBS
-from .verbs.once import NUMBER
 
 if TYPE_CHECKING:
-    from ..flows.base import Flow
     from ..modes.accuracy import Accuracy
 
 SPEC = "a number, a list a,b,c, or a range a:b:n (log-spaced) or a:b:n:lin"
@@ -35,8 +28,6 @@ FORMS = {".csv": "csv", ".json": "json", ".nc": "netcdf"}  # that the ending of 
 _TEXT = "", ".txt"  # endings of a table
 _RADIANS = 1.6  # degrees: a smaller slope may be one in radians, of which a right angle has 1.57
 _PLOTS = (".png", ".pdf", ".svg")
-LAW = ("friction law: linear, saturating, regularised, power, or your own: path/to/file.py:Class; its parameters are "
-       "listed by: --law NAME --help")
 
 
 def add_verb(verbs: Any, name: str, run: Callable[..., Any], example: str, *options: Callable[..., Any]) -> None:
@@ -55,7 +46,7 @@ def add_bare_verb(verbs: Any, name: str, run: Callable[..., Any], example: str, 
         option(verb)
     verb.add_argument("--quiet", action="store_true", help="no progress and no warnings on standard error")
     verb.add_argument("-h", "--help", action="help", help="show this help and exit")
-    verb.set_defaults(run=run, form="table", complete=_add_parameters)
+    verb.set_defaults(run=run, form="table", complete=add_parameters)
 
 
 def _output_options(verb: Any) -> None:
@@ -67,81 +58,6 @@ def _output_options(verb: Any) -> None:
     plot_options(verb)
 
 
-def _add_parameters(verb: Any, words: list[str]) -> None:
-    """Add a flag for every parameter of the flow that the words name."""
-    name = _flow_named(verb, words)
-    if name is None:
-        verb.add_argument_group("parameters of the flow", f"listed by: {verb.prog} FLOW --help")
-        return
-    flow = _class_of(name, _law_named(words))
-    group = verb.add_argument_group(f"parameters of {flow.name}", flow.title)
-    if hasattr(flow, "under"):
-        group.add_argument("--law", metavar="NAME", help=LAW)
-    for item in fields(flow):
-        text = f"{item.metadata['meaning']}; {allowed(item.metadata)}, default {item.default}".replace("%", "%%")
-        for spelling in dict.fromkeys((flag(item), f"--{item.name}")):
-            group.add_argument(spelling, dest=f"parameter {item.name}", metavar=_metavar(item),
-                               help=text if spelling == flag(item) else argparse.SUPPRESS)
-
-
-def _flow_named(verb: Any, words: list[str]) -> str | None:
-    """The first of the words that is no option and no value of one; an option that is unknown yet takes a value."""
-    value_follows = False
-    for word in words:
-        if value_follows:
-            value_follows = False
-        elif not word.startswith("-") or word == "-":
-            return word
-        else:
-            option = verb._option_string_actions.get(word)
-            long = word.startswith("--") and "=" not in word
-            value_follows = option.nargs != 0 if option else long
-    return None
-
-
-def _metavar(item: Any) -> str:
-    return NUMBER if numeric(item) else "FILE" if "table" in item.metadata else "NAME"
-
-
-def _law_named(words: list[str]) -> str | None:
-    """The friction law that the words name, or None; an abbreviated or missing value is left to the parser."""
-    for word, following in zip(words, [*words[1:], None], strict=True):
-        if word == "--law" or word.startswith("--law="):
-            return word.partition("=")[2] if "=" in word else following
-    return None
-
-
-def _class_of(name: str, law: str | None) -> Any:
-    """The class of flows with this name, under the friction law if one is named."""
-    flow = find(name)
-    if law is None or not hasattr(flow, "under"):
-        return flow
-    from ..flows.laws import find_law
-
-    return flow.under(find_law(law))
-
-
-def flag(item: Any) -> str:
-    """Command-line flag of a parameter."""
-    return flag_of(item.name)
-
-
-def nearest_flag(arguments: argparse.Namespace, unknown: Any) -> Any:
-    """A hint at the parameter that an unknown option may stand for."""
-    if not getattr(arguments, "flow", None):
-        return ""
-    flow = _class_of(arguments.flow, getattr(arguments, "law", None))
-    flags = [flag(item) for item in fields(flow)]
-    return nearest(unknown.partition("=")[0], flags) or f"; {flow.name} has {', '.join(flags) or 'no parameters'}"
-
-
-def nearest_option(unknown: str, known: list[str]) -> str:
-    """A hint at the option of a verb that an unknown one may stand for, in the other case of letters first."""
-    name = unknown.partition("=")[0]
-    same = [option for option in known if option.lower() == name.lower()]
-    return nearest(same[0], same) if same else nearest(name, known)
-
-
 def k_option(verb: Any) -> None:
     verb.add_argument("--k", required=True, metavar="SPEC", help=f"wavenumbers: {SPEC}")
 
@@ -151,34 +67,6 @@ def accuracy_options(verb: Any) -> None:
     verb.add_argument("--tolerance", metavar="T", default=str(TOLERANCE),
                       help="relative error of sigma accepted as resolved")
     verb.add_argument("--max-degree", metavar="N", default=str(DEGREES[-1]), help="largest Chebyshev degree tried")
-
-
-def flow_of(arguments: argparse.Namespace) -> "Flow":
-    """The flow with the parameters given as flags."""
-    given = {key.partition(" ")[2]: value for key, value in vars(arguments).items()
-             if key.startswith("parameter ") and value is not None}
-    flow = _class_of(arguments.flow, getattr(arguments, "law", None))(**given)
-    return check_flow(flow)
-
-
-def sweep_of(arguments: argparse.Namespace, flow: "Flow") -> tuple[Any, ...]:
-    """The swept parameter's name (or None) and the flows of the sweep."""
-    if arguments.over is None:
-        return None, [flow]
-    name, values = swept_values(arguments.over, flow)
-    return name, [replace(flow, **{name: value}) for value in values]
-
-
-def swept_values(text: str, flow: "Flow", option: str = "--over") -> tuple[str, list[float]]:
-    """The parameter and its values of NAME=SPEC."""
-    name, _, spec = text.partition("=")
-    name = name.replace("-", "_")
-    known = [item.name for item in fields(flow) if numeric(item)]
-    if name not in known:
-        raise ParameterError(f"{option}: {flow.name} has no parameter {name!r}{nearest(name, known)}; "
-                             f"it has {', '.join(known)}")
-    (item,) = (item for item in fields(flow) if item.name == name)
-    return name, parse_spec(spec, f"{option} {name}", False, item.metadata["unbounded"]).tolist()
 
 
 def accuracy_of(arguments: argparse.Namespace) -> "Accuracy":
@@ -195,6 +83,8 @@ def report(arguments: argparse.Namespace, compute: Callable[..., Any]) -> int:
     """Check where output goes, compute a Record, write it; return the exit status."""
     form = check_files(arguments)
     result = compute()
+    from ..output.text import render, whole_file
+
     rows, header = result.rows(), result.header()
     missing = [row for row in rows if is_interrupted(row["status"])]
     failed = [row for row in rows if not is_settled(row["status"]) and not is_interrupted(row["status"])]
@@ -229,9 +119,7 @@ def report(arguments: argparse.Namespace, compute: Callable[..., Any]) -> int:
 
 def _radians(arguments: argparse.Namespace) -> Iterator[Any]:
     """A hint where an angle in degrees is so small that it may have been meant in radians."""
-    given = {key.partition(" ")[2]: value for key, value in vars(arguments).items()
-             if key.startswith("parameter ") and value is not None}
-    for name, text in given.items():
+    for name, text in given(arguments).items():
         value = as_number(text) if name.endswith("_deg") else None
         if value is not None and 0 < value < _RADIANS:
             yield (f"{name} = {value:g} is an angle in degrees; if it is meant in radians, give "
@@ -240,6 +128,8 @@ def _radians(arguments: argparse.Namespace) -> Iterator[Any]:
 
 def check_files(arguments: argparse.Namespace) -> str:
     """Before the work, not after it: can its results be written? Return in which form."""
+    from ..output.text import check_writable
+
     if arguments.output is not None:
         check_writable(arguments.output, "-o")
     elif output_closed():
@@ -272,6 +162,8 @@ def _deliver(output: str | None, content: bytes) -> None:
     if output is None:
         put(content.decode())
         return
+    from ..output.text import whole_file
+
     with whole_file(output, "-o") as temporary:
         temporary.write_bytes(content)
 

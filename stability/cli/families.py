@@ -2,16 +2,14 @@
 
 import argparse
 from collections.abc import Callable, Iterator
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..errors import ParameterError
+from ..flows.declaration import Declaration
 from ..status import is_interrupted
-from .common import flow_of, report, swept_values
-
-if TYPE_CHECKING:
-    from ..flows.base import Flow
-    from ..studies.family import Family
+from .asked import checked, flow_of, given, sweep_of, swept
+from .common import report
+from .specs import Spec
 
 _MOST = 42  # curves that differ in colour or line style
 
@@ -21,37 +19,39 @@ def each_option(verb: Any) -> None:
                       help="the same for each value of another parameter")
 
 
-def answer(arguments: argparse.Namespace, question: Callable[..., Any]) -> int:
+def answer(arguments: argparse.Namespace, ask: Callable[[Declaration], Callable[..., Any]]) -> int:
     """Report the result of a verb, for one flow or for each of a family; return the exit status.
 
-    `question(flow)` checks what is asked of a flow, and returns the function that computes its Record.
+    `ask(what the flow declares)` checks what is asked, and returns the question: `question(flow)` checks what depends
+    on the values of its parameters, and returns the function that computes its Record.
     """
-    flow = flow_of(arguments)
-    if arguments.each is None:
-        return report(arguments, question(flow))
-    name, values = _values(arguments, flow)
-    flows = [replace(flow, **{name: value}) for value in values]
-    computations = [question(one) for one in flows]
+    declared = checked(arguments)
+    each = None if arguments.each is None else _each(arguments, declared)
+    question = ask(declared)
 
-    def compute() -> "Family":
+    def compute() -> Any:
+        flow = flow_of(arguments)
+        if each is None:
+            return question(flow)()
+        computations = [question(one) for one in sweep_of(flow, each)]
+        members = list(_members(computations))
         from ..studies.family import Family
 
-        members = list(_members(computations))
-        return Family(flow, name, tuple(members), tuple(values[len(members):]))
+        return Family(flow, each[0], tuple(members), tuple(each[1].array.tolist()[len(members):]))
 
     return report(arguments, compute)
 
 
-def _values(arguments: argparse.Namespace, flow: "Flow") -> tuple[str, list[float]]:
+def _each(arguments: argparse.Namespace, flow: Declaration) -> tuple[str, Spec]:
     """The parameter and its values; refused where they would have no effect, or be lost among themselves."""
-    name, values = swept_values(arguments.each, flow, "--each")
-    if getattr(arguments, f"parameter {name}", None) is not None:
+    name, values = swept(arguments.each, flow, "--each")
+    if name in given(arguments):
         raise ParameterError(f"--each: {name} is given as --{name.replace('_', '-')} too; leave one of them out")
     for option in ("over", "vary"):
         text = getattr(arguments, option, None) or ""
         if text.partition("=")[0].replace("-", "_") == name:
             raise ParameterError(f"--each: {name} is the parameter of --{option}; take another one")
-    if len(set(values)) < len(values):
+    if len(set(values.known)) < len(values.known):
         raise ParameterError(f"--each {name}: a value is given twice")
     if arguments.plot and len(values) > _MOST:
         raise ParameterError(f"--each {name}: a figure has up to {_MOST} curves (got {len(values)} values); leave out "

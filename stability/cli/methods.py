@@ -32,19 +32,27 @@ def bvp_settings(bvp: Any, options: Any = None) -> Any:
     return {"residual": bvp["residual"]} | ({} if delta is None else {"delta": delta})
 
 
-def method_of(arguments: argparse.Namespace, flow: "Flow", tolerance: float) -> dict[str, Any] | None:
-    """Arguments for `bvp.continuation`, or None for collocation."""
+def check_method(arguments: argparse.Namespace) -> None:
+    """Raise a ParameterError where the options of `method_options` contradict each other or the others."""
     if arguments.method not in METHODS:
         raise ParameterError(f"--method: must be one of {', '.join(METHODS)} (got {arguments.method!r})")
     if arguments.delta is not None and arguments.method != "bvp-thesis":
         raise ParameterError("--delta: only --method bvp-thesis regularises the free surface")
     for option in sorted(_UNUSED[arguments.method] & arguments.given):
         raise ParameterError(f"--{option.replace('_', '-')}: --method {arguments.method} does not use it; leave it out")
+    _delta(arguments)
+
+
+def _delta(arguments: argparse.Namespace) -> float | None:
+    return None if arguments.delta is None else parse_one(arguments.delta, "--delta")
+
+
+def method_of(arguments: argparse.Namespace, flow: "Flow", tolerance: float) -> dict[str, Any] | None:
+    """Arguments for `bvp.continuation`, or None for collocation."""
     if arguments.method == "collocation":
         return None
     from ..bvp.thesis import THESIS_RESIDUAL, thesis_setting
 
     if arguments.method == "bvp":
         return {"tolerance": tolerance}
-    delta = None if arguments.delta is None else parse_one(arguments.delta, "--delta")
-    return {"residual": THESIS_RESIDUAL, "setting": thesis_setting(flow, delta)}
+    return {"residual": THESIS_RESIDUAL, "setting": thesis_setting(flow, _delta(arguments))}

@@ -4,6 +4,7 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from ..errors import ParameterError
+from ..output.sheet import parse_log, parse_size, read_style
 
 if TYPE_CHECKING:
     from ..output.look import Look
@@ -32,12 +33,12 @@ def look_of(arguments: argparse.Namespace) -> "Look | None":
             raise ParameterError(f"--{name}: says how a figure looks; add --plot FILE")
         return None
     if getattr(arguments, "look", None) is None:
-        from ..output.look import Look, parse_log, parse_size, read_style
+        size = parse_size(arguments.size) if arguments.size else None
+        style = read_style(arguments.style) if arguments.style else {}
+        log = parse_log(arguments.log) if arguments.log else ""
+        from ..output.look import Look
         from ..output.overlay import read_overlay
 
-        arguments.look = Look(parse_size(arguments.size) if arguments.size else None,
-                              read_style(arguments.style) if arguments.style else {}, arguments.title,
-                              parse_log(arguments.log) if arguments.log else "",
-                              tuple(map(read_overlay, arguments.overlay)),
+        arguments.look = Look(size, style, arguments.title, log, tuple(map(read_overlay, arguments.overlay)),
                               (arguments.panel,) if arguments.panel else ())
     return arguments.look

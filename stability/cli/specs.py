@@ -1,37 +1,69 @@
-"""Values given on the command line: a number, a list `a,b,c`, or a range `a:b:n` (log-spaced) or `a:b:n:lin`."""
+"""Values given on the command line: a number, a list `a,b,c`, or a range `a:b:n` (log-spaced) or `a:b:n:lin`.
 
+They are read, and refused, without numerics; `Spec.array` has the numbers.
+"""
+
+from dataclasses import dataclass
 from math import inf, isfinite
-from typing import Any
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from ..errors import ParameterError
+
+if TYPE_CHECKING:
+    import numpy as np
 
 _MOST = 100_000
 _LEAST = 1e-3  # start of the range that is proposed, relative to its end
 
 
-def parse_spec(text: Any, name: Any, positive: Any = True, unbounded: Any = False) -> Any:
-    """Return the values of a SPEC as a float array (count,); raise a ParameterError that names `name`.
+@dataclass(frozen=True)
+class Spec:
+    """The `known` values of a SPEC: all of a list, or the first and the last of a range of `count`."""
 
-    `unbounded` admits inf in a list.
-    """
-    values = _range(text, name, positive) if ":" in text else \
-        np.array([_number(part, name, unbounded) for part in text.split(",")])
-    if positive and not np.all(values > 0):
-        raise ParameterError(f"{name}: values must be positive (got {min(values):g})")
-    return values
+    known: tuple[float, ...]
+    count: int
+    linear: bool = True
+
+    def __len__(self) -> int:
+        return self.count
+
+    @property
+    def array(self) -> "np.ndarray":
+        """All values, shape (count,)."""
+        import numpy as np
+
+        if self.count == len(self.known):
+            return np.array(self.known)
+        low, high = self.known
+        return (np.linspace if self.linear else np.geomspace)(low, high, self.count)
+
+
+def read_spec(text: str, name: str, positive: bool = True, unbounded: bool = False) -> Spec:
+    """Return what a SPEC says; raise a ParameterError that names `name`. `unbounded` admits inf in a list."""
+    if ":" in text:
+        spec = _range(text, name, positive)
+    else:
+        numbers = tuple(_number(part, name, unbounded) for part in text.split(","))
+        spec = Spec(numbers, len(numbers))
+    if positive and not min(spec.known) > 0:
+        raise ParameterError(f"{name}: values must be positive (got {min(spec.known):g})")
+    return spec
+
+
+def parse_spec(text: str, name: str, positive: bool = True, unbounded: bool = False) -> "np.ndarray":
+    """Return the values of a SPEC as a float array (count,), or raise a ParameterError, as `read_spec` does."""
+    return read_spec(text, name, positive, unbounded).array
 
 
 def parse_one(text: str, name: str, what: str = "value") -> float:
     """Return a SPEC of a single positive number as a float; `what` names it in the message."""
-    values = parse_spec(text, name)
-    if len(values) != 1:
-        raise ParameterError(f"{name}: one {what} at a time (got {len(values)})")
-    return float(values[0])
+    spec = read_spec(text, name)
+    if len(spec) != 1:
+        raise ParameterError(f"{name}: one {what} at a time (got {len(spec)})")
+    return spec.known[0]
 
 
-def _range(text: str, name: str, positive: bool) -> np.ndarray:
+def _range(text: str, name: str, positive: bool) -> Spec:
     parts = text.split(":")
     linear = parts[3:] == ["lin"]
     if len(parts) != 3 and not linear:
@@ -47,11 +79,9 @@ def _range(text: str, name: str, positive: bool) -> np.ndarray:
         raise ParameterError(f"{name}: {kind} starts above 0 (got {text!r}); {would_do}{others} would do")
     if not start < stop:
         raise ParameterError(f"{name}: a range must rise, a < b (got {text!r})")
-    if linear:
-        return np.linspace(start, stop, count)
-    if start <= 0:
+    if not linear and start <= 0:
         raise ParameterError(f"{name}: a logarithmic range starts above 0 (got {text!r}); add :lin for equal steps")
-    return np.geomspace(start, stop, count)
+    return Spec((start, stop), count, linear)
 
 
 def _number(text: str, name: str, unbounded: bool = False) -> float:

@@ -8,7 +8,8 @@ from typing import Any
 from ..cli.command import parser_of
 from ..cli.verbs import VERBS
 from ..flows import FLOWS
-from ..flows.base import allowed, numeric, span_of
+from ..flows.base import span_of
+from ..flows.rules import allowed, numeric
 from ..output.columns import BY_VERB, PARAMETERS, SCALES, column
 
 _IMAGE = '<img src="figures/{0}" alt="{0}" style="max-width: 100%">'

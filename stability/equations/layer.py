@@ -36,6 +36,7 @@ from ..numerics.smooth import MOST_SAMPLES, Fit, Rough, fit
 from .forms import Form
 
 FIELDS = ("v", "w", "t", "n")
+ODD_WITH_W = -1, 1, 1, -1  # parity of these fields about a line of symmetry, relative to that of w
 
 _NUMBERS = "the values of a profile must be finite real numbers, one for all points or one for each"
 _EPS = np.finfo(float).eps

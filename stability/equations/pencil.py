@@ -59,7 +59,8 @@ class Layout:
     """Where unknowns and entries of the matrices of one degree lie, from a `table` that reaches it.
 
     Attributes: `size` rows and columns, of which `interior` are banded; `columns` and `rows` map unknowns and equations
-    to index arrays; `last` (equations, 4) are the last rows of each equation. `stack`, `tail`, `b` and `places` tell
+    to index arrays of their coefficients, `orders` to the numbers of those; `last` (equations, 4) are the last rows of
+    each equation; `tails` rows lie beyond. `stack`, `tail`, `b` and `places` tell
     where the entries of A - rate B, of the rows beyond, of B and of the bordered band matrix lie; `inside`, `beyond`
     and `carrying`, which entries of the table those are; `carriers` (parts,), which parts are of B, and `sides` the
     first of A and the first of B.
@@ -68,9 +69,9 @@ class Layout:
     def __init__(self, table: "Table", degree: int) -> None:
         self.table, self.structure, self.degree, self._common = table, table.structure, degree, {}
         columns, rows = self._place(table)
-        reach = np.array([degree + row.extra + table.tail if number < table.structure.equations else 1
-                          for number, row in enumerate(table.structure.rows)])
-        kept = np.flatnonzero((table.column <= degree) & (table.row < reach[table.equation]))
+        within = (table.column <= degree) & (table.row < rows.shape[1])
+        places = rows[table.equation, np.where(within, table.row, 0)]
+        kept = np.flatnonzero(within & (places >= 0) & (columns[table.unknown, np.where(within, table.column, 0)] >= 0))
         part, row, column = (table.part[kept], rows[table.equation[kept], table.row[kept]],
                              columns[table.unknown[kept], table.column[kept]])
         here, count = row < self.size, len(self.structure.parts)
@@ -79,7 +80,7 @@ class Layout:
         self.stack = Lines(part[here], row[here], column[here], count, (self.size, self.size))
         self.places = Places(part[here], row[here], column[here], count, self.interior, self.size - self.interior)
         self.tail = Lines(part[~here], row[~here] - self.size, column[~here], count,
-                          (table.tail * len(self.last), self.size))
+                          (self.tails, self.size))
         self.b = Lines(part[carries], row[carries], column[carries], count, (self.size, self.size))
         self.rate_rows = np.unique(row[carries])
         self.carriers, self.sides = np.arange(count) >= self.structure.first_b, np.array((0, self.structure.first_b))
@@ -100,29 +101,38 @@ class Layout:
         structure, width = table.structure, self.degree + 1
         equations, conditions = structure.rows[:structure.equations], len(structure.rows) - structure.equations
         extra = np.array([equation.extra for equation in equations])
-        field, j = (index.ravel() for index in np.indices((structure.fields, width)))
+        used = np.zeros((len(structure.unknowns), width), bool)
+        for unknown, first in enumerate(structure.first):
+            used[unknown, first:: structure.stride] = True
+        used[structure.fields:, 0] = True
+        field, j = np.nonzero(used[: structure.fields])
         opposite = j >= 1 - extra[field]
         field, j = field[opposite], j[opposite]
         order = np.lexsort((field % len(FIELDS), j, field // len(FIELDS)))
         field, j, self.interior = field[order], j[order], len(order)
-        columns = np.full((len(structure.unknowns), width), -1)
+        columns = np.full(used.shape, -1)
         columns[field, j] = np.arange(self.interior)
-        used = np.arange(width) < np.where(np.arange(len(columns)) < structure.fields, width, 1)[:, None]
         free = used & (columns < 0)
         self.size = self.interior + int(free.sum())
         columns[free] = np.arange(self.interior, self.size)
         rows = np.full((len(extra) + conditions, width + int(extra.max()) + table.tail), -1)
         rows[field, j - 1 + extra[field]] = np.arange(self.interior)
         rows[len(extra):, 0] = np.arange(self.interior, self.interior + conditions)
-        self.columns = {name: places[mask]
-                        for name, places, mask in zip(structure.unknowns, columns, used, strict=True)}
-        self.rows = {equation.name: rows[i, : self.degree + equation.extra]
-                     for i, equation in enumerate(equations)}
-        self.rows["conditions"] = rows[len(extra):, 0]
-        self.last = np.array([self.rows[equation.name][-_LAST:] for equation in equations])
-        for i, count in enumerate(self.degree + extra):
-            rows[i, count: count + table.tail] = self.size + i * table.tail + np.arange(table.tail)
+        self.orders = {name: np.flatnonzero(mask) for name, mask in zip(structure.unknowns, used, strict=True)}
+        self.columns = {name: places[self.orders[name]] for name, places in
+                        zip(structure.unknowns, columns, strict=True)}
+        self._name_rows(equations, rows)
         return columns, rows
+
+    def _name_rows(self, equations: tuple[Any, ...], rows: np.ndarray) -> None:
+        """Tell apart the rows of each equation, and number those beyond the degree."""
+        structure, tails = self.structure, np.arange(-(-self.table.tail // self.structure.stride))
+        self.rows, self.tails = {"conditions": rows[len(equations):, 0]}, len(tails) * len(equations)
+        for i, (equation, first) in enumerate(zip(equations, structure.first, strict=True)):
+            orders = np.arange(structure.stride - 1 - first, self.degree + equation.extra, structure.stride)
+            self.orders[equation.name], self.rows[equation.name] = orders, rows[i, orders]
+            rows[i, orders[-1] + structure.stride * (1 + tails)] = self.size + i * len(tails) + tails
+        self.last = np.array([self.rows[equation.name][-_LAST:] for equation in equations])
 
 
 def _common(one: dict[str, np.ndarray], other: dict[str, np.ndarray]) -> tuple[np.ndarray, ...]:
@@ -153,6 +163,21 @@ class Pencil:
         """Return the `Weights` for symbols {name: (value, slope, error)}, non-zero numbers or arrays (points,)."""
         return weights_of(self.layout.structure, symbols)
 
+    def field(self, x: np.ndarray, unknown: str) -> np.ndarray:
+        """All coefficients of a field in right vectors (size, ...), (degree + 1, ...)."""
+        return self._filled(x[self.columns[unknown]], unknown, self.degree + 1)
+
+    def adjoint(self, y: np.ndarray, equation: str) -> np.ndarray:
+        """All coefficients of what multiplies the residuals of an equation in left vectors (size, ...), (rows, ...)."""
+        return self._filled(y[self.rows[equation]], equation, self.layout.orders[equation][-1] + 1)
+
+    def _filled(self, coefficients: np.ndarray, name: str, count: int) -> np.ndarray:
+        if len(coefficients) == count:
+            return coefficients
+        full = np.zeros((count, *coefficients.shape[1:]), coefficients.dtype)
+        full[self.layout.orders[name]] = coefficients
+        return full
+
     def powers(self, rate: Any) -> np.ndarray:
         """Factor of every part in the residual: 1 in A, the rate in B; (parts,) then the shape of rate."""
         return np.where(self.layout.carriers[(...,) + (None,) * np.ndim(rate)], rate, 1.0)
@@ -166,7 +191,7 @@ class Pencil:
         """
         total = np.zeros(x.shape[1:])
         for part, unknown, rows, bound in self.cuts:
-            series = chebyshev.basis(self.degree)[int(unknown.endswith("'"))] @ x[self.columns[unknown.rstrip("'")]]
+            series = chebyshev.basis(self.degree)[int(unknown.endswith("'"))] @ self.field(x, unknown.rstrip("'"))
             adjoint = 2 * y[rows]
             adjoint[0] /= 2
             total += bound * np.abs(weights[part]) * np.mean(self._sizes(adjoint) * self._sizes(series), axis=-1)

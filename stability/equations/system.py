@@ -5,7 +5,7 @@ multiplies the unknown (or its s-derivative, marked ') and a product of scalar s
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -15,12 +15,13 @@ import numpy as np
 from ..checks import shown
 from ..errors import ConditionCount, ParameterError
 from .forms import Form, variable
-from .layer import FIELDS, residuals, resolved
+from .layer import FIELDS, ODD_WITH_W, residuals, resolved
 
 if TYPE_CHECKING:
     from .layer import Layer, Profile
 
 _PROPORTIONAL = 1e-12  # relative difference of ratios that is rounding: two conditions that say the same
+_SYMMETRIC = 1e-13  # largest coefficient of the wrong parity, relative, in a layer that is its own mirror image
 _EQUATIONS = ("shear rate", "continuity", "momentum along", "momentum across")
 
 
@@ -52,6 +53,8 @@ class Structure:
 
     The first `fields` of the `unknowns` are fields, the others surfaces; `longest` is that of `System`. `parts` are the
     monomials, those from `first_b` on with the rate; `powers` (parts, symbols) counts the other `symbols` in them.
+    Where w has a `reflection`, 1 or -1, of the T-coefficients of every field and residual either the even or the odd
+    ones vanish; it is 0 where all count.
     """
 
     unknowns: tuple
@@ -59,6 +62,17 @@ class Structure:
     equations: int
     longest: int
     rows: tuple
+    reflection: int = 0
+
+    @property
+    def stride(self) -> int:
+        """From one coefficient that counts to the next."""
+        return 2 if self.reflection else 1
+
+    @cached_property
+    def first(self) -> tuple[int, ...]:
+        """The first coefficient that counts of each field; of its equation it is the other one, 0 or 1."""
+        return tuple(int(self.reflection * ODD_WITH_W[field % len(FIELDS)] < 0) for field in range(self.fields))
 
     @cached_property
     def parts(self) -> tuple[Any, ...]:
@@ -86,7 +100,7 @@ class System:
                                 **{name: variable(name) for name in (*flow.functions, *flow.surfaces)})
         layers = flow.layers(names)
         self.fields = tuple(f"{layer.name}.{field}" for layer in layers for field in FIELDS)
-        self.surfaces = tuple(flow.surfaces)
+        self.surfaces, self.reflection = tuple(flow.surfaces), flow.reflection
         self.equations = tuple(equation for index in range(len(layers))
                                for equation in self._equations(flow, layers, index, names))
         edges = SimpleNamespace(**{layer.name: tuple(_edge(layer, end) for end in (0, 1)) for layer in layers})
@@ -95,11 +109,14 @@ class System:
         self.conditions = tuple(self._terms(form) for form in given)
         self.dynamic_layers = sum(not layer.steady for layer in layers)
         _check_count(flow, layers, len(self.conditions))
+        if self.reflection:
+            self.equations = _mirrored(flow, layers, self.equations)
 
     @property
     def pattern(self) -> tuple[Any, ...]:
         """Which unknowns and monomials meet in each equation and condition, whatever their coefficients: hashable."""
-        return tuple((row.extra, tuple(term[:2] for term in row.terms)) for row in self.structure.rows)
+        rows = tuple((row.extra, tuple(term[:2] for term in row.terms)) for row in self.structure.rows)
+        return self.reflection, *rows
 
     @cached_property
     def structure(self) -> "Structure":
@@ -108,7 +125,7 @@ class System:
         return Structure((*self.fields, *self.surfaces), len(self.fields), len(self.equations), self.longest, tuple(
             EquationRow(name, extra, tuple((unknown, monomial, _support(series))
                                            for unknown, monomial, series in terms))
-            for name, extra, terms in rows))
+            for name, extra, terms in rows), self.reflection)
 
     @property
     def coefficients(self) -> np.ndarray:
@@ -117,7 +134,8 @@ class System:
         return np.concatenate([series[series != 0] for terms in rows for *_, series in terms])
 
     def __eq__(self, other: Any) -> Any:
-        return _same(self.equations, other.equations) and _same(self.conditions, other.conditions)
+        return self.reflection == other.reflection and _same(self.equations, other.equations) and _same(
+            self.conditions, other.conditions)
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -212,10 +230,35 @@ def _proportional(one: dict[tuple[Any, ...], Any], other: dict[tuple[Any, ...], 
     return all(abs(ratio - ratios[0]) <= _PROPORTIONAL * abs(ratios[0]) for ratio in ratios)
 
 
+def _mirrored(flow: Any, layers: tuple[Any, ...], equations: tuple["Equation", ...]) -> tuple["Equation", ...]:
+    """The equations of a layer that is its own mirror image, coefficients of the wrong parity (rounding) left out."""
+    if len(layers) > 1 or layers[0].singular or any(equation.cuts for equation in equations):
+        raise ParameterError(f"{flow.name}: reflection = {flow.reflection} is for a flow of one layer without a yield "
+                             "surface, whose profile is smooth: use reflection = 0")
+    return tuple(replace(equation, terms=tuple(
+        (unknown, monomial, _of_parity(flow, series, ODD_WITH_W[index] * ODD_WITH_W[FIELDS.index(
+            unknown.rstrip("'").rpartition(".")[2])] * (1 if unknown.endswith("'") else -1)))
+        for unknown, monomial, series in equation.terms)) for index, equation in enumerate(equations))
+
+
+def _of_parity(flow: Any, series: np.ndarray, parity: int) -> np.ndarray:
+    """The series without its even coefficients, or its odd ones where the parity is 1; they must be rounding."""
+    kept = series.copy()
+    kept[int(parity > 0):: 2] = 0
+    if np.abs(series - kept).max() > _SYMMETRIC * np.abs(series).max():
+        raise ParameterError(f"{flow.name}: reflection = {flow.reflection}, but the layer is not its own mirror image: "
+                             "use reflection = 0 or a profile that is even about the middle of the layer")
+    return kept
+
+
 def _check_count(flow: Any, layers: tuple[Any, ...], given: int) -> None:
-    """Each layer needs one condition per equation, less one per singular edge; each surface one more."""
-    needed = sum(4 - layer.singular for layer in layers) + len(flow.surfaces)
+    """Each layer needs one condition per equation, less one per singular edge; each surface one more.
+
+    Of a layer that is its own mirror image only the conditions at the upper edge are given.
+    """
+    whole = 2 if flow.reflection else 4
+    needed = sum(whole - layer.singular for layer in layers) + len(flow.surfaces)
     if given != needed:
-        parts = [f"{4 - layer.singular} for {layer.name}" for layer in layers]
+        parts = [f"{whole - layer.singular} for {layer.name}" for layer in layers]
         parts += [f"1 for {surface}" for surface in flow.surfaces]
         raise ConditionCount(f"{flow.name}: expected {needed} conditions ({', '.join(parts)}), got {given}")

@@ -2,14 +2,15 @@
 
 from collections.abc import Callable
 from dataclasses import Field, dataclass, field, fields
-from math import inf, isfinite, isinf
+from math import inf, isinf
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from ..checks import LARGEST, as_number, check_options, in_double_precision, shown
+from ..checks import shown
 from ..equations.layer import Profile
 from ..errors import ParameterError
 from . import sources
 from .contract import check_body, verify
+from .rules import check_parameter, check_varied
 
 _INSET, _AROUND = 1e-3, 100.0  # of a bounded range left out at its ends; factor about the default of an unbounded one
 
@@ -59,11 +60,6 @@ def table_parameter(default: str, read: Callable[[str, Any], Any], *, kinds: str
     return field(default=default, metadata={"table": True, "read": read, "kinds": kinds, "meaning": meaning})
 
 
-def numeric(item: Any) -> bool:
-    """Whether a field of a flow is a number, that can be swept, varied and differenced: no name and no table."""
-    return not {"options", "table"} & item.metadata.keys()
-
-
 @dataclass(frozen=True)
 class Flow:
     """A parallel base flow as a boundary-value problem in (k, sigma).
@@ -102,7 +98,7 @@ class Flow:
     unbounded: ClassVar[bool] = False  # whether the fluid is cut where it should go on to infinity
     data: ClassVar[Any] = None  # what was measured: `basis(z)`, `slopes(z)` and `covariance` of the terms of U
     chopped: ClassVar[float] = 0.0  # bound on what a series that stands for U leaves out of it
-    reflection: ClassVar[int] = 0  # of w in the lowest edge, 1 even or -1 odd, where that is a line of symmetry
+    reflection: ClassVar[int] = 0  # of w about the middle of the only layer, 1 even or -1 odd: modes of one parity
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
@@ -153,7 +149,7 @@ class Flow:
         return []
 
     def halves(self) -> "tuple[Flow, ...]":
-        """Return flows whose modes together are those of this one: itself, or symmetry classes on half the domain."""
+        """Return flows whose modes together are those of this one: itself, or its symmetry classes."""
         return (self,)
 
     @property
@@ -220,45 +216,9 @@ def check_flow(flow: Any) -> Any:
     return flow
 
 
-def check_parameter(flow: Any, item: Any, value: Any) -> Any:
-    """Return the value as a float (or one of the options), or raise a `ParameterError` that says why not."""
-    rule = item.metadata
-    if "options" in rule:
-        return check_options(f"{flow}: {item.name}", value, rule["options"])
-    if "table" in rule:
-        return rule["read"](f"{flow}: {item.name}", value)
-    number = as_number(value)
-    if number is None:
-        raise ParameterError(f"{flow}: {item.name} must be a number in {allowed(rule)} (got {shown(value)})")
-    inside = (rule["low"] is None or number > rule["low"] or rule["closed"] and number == rule["low"]) \
-        and (rule["high"] is None or number < rule["high"])
-    if not inside or not (isfinite(number) or rule["unbounded"] and (number > 0 or rule["low"] is None)):
-        reason = f": {rule['reason']}" if rule["reason"] else ""
-        raise ParameterError(f"{flow}: {item.name} must lie in {allowed(rule)}{reason} (got {number:g})")
-    if isfinite(number) and not in_double_precision(number):
-        raise ParameterError(f"{flow}: {item.name} must lie between {1 / LARGEST:g} and {LARGEST:g} for double "
-                             f"precision: change the scales (got {number:g})")
-    return number
-
-
 def check_parameter_name(flow: Flow, name: str) -> str:
     """Return `name` if it is a numeric parameter of the flow, else raise a ParameterError."""
-    known = [item.name for item in fields(flow) if numeric(item)]
-    if not (isinstance(name, str) and name in known):
-        raise ParameterError(f"{flow.name} has no numeric parameter {shown(name)} to vary; it has {', '.join(known)}")
-    return name
-
-
-def allowed(rule: Any) -> Any:
-    """The admissible values in words: `(1, inf)` is open, `[0, inf]` admits its ends, `a | b` is a choice."""
-    if "options" in rule:
-        return " | ".join(rule["options"])
-    if "table" in rule:
-        return rule["kinds"]
-    low = "-inf" if rule["low"] is None else f"{rule['low']:g}"
-    high = "inf" if rule["high"] is None else f"{rule['high']:g}"
-    closed = rule["closed"] or rule["unbounded"] and rule["low"] is None
-    return f"{'[' if closed else '('}{low}, {high}{']' if rule['unbounded'] else ')'}"
+    return check_varied(flow.name, fields(flow), name)
 
 
 def span_of(flow: Any, vary: Any) -> Any:

@@ -5,11 +5,12 @@
 writes `declared.py` anew after a declaration has changed; a test compares it with the classes.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .catalogue import FLOWS, find
+from .rules import allowed, numeric
 
 if TYPE_CHECKING:
     from .base import Flow
@@ -19,23 +20,35 @@ _ABOVE = '''"""What the flows of this package declare; written by `python -m sta
 
 DECLARED = {
 '''
+_RULES = "meaning", "low", "high", "closed", "unbounded", "reason", "options", "table", "kinds"  # that need no numerics
 
 
 class Parameter(NamedTuple):
-    """A parameter of a flow in words: its name, default, admissible values, and meaning with its units."""
+    """A parameter of a flow: its name, default as text, the rules that values obey with their meaning and units, and
+    where neutral values of it are looked for."""
 
     name: str
     default: str
-    allowed: str
-    meaning: str
+    metadata: Mapping[str, Any]
+    searched: str
+
+    @property
+    def allowed(self) -> str:
+        """The admissible values in words."""
+        return allowed(self.metadata)
+
+    @property
+    def meaning(self) -> str:
+        return str(self.metadata["meaning"])
 
 
 class Declaration(NamedTuple):
-    """What a flow declares; `scales` are those of length, velocity and stress."""
+    """What a flow declares; `scales` are those of length, velocity and stress, `takes_law` whether friction laws."""
 
     name: str
     title: str
     scales: str
+    takes_law: bool
     parameters: tuple[Parameter, ...]
 
 
@@ -50,8 +63,8 @@ def declared(name: str) -> Declaration:
     from .declared import DECLARED
 
     if name in DECLARED and FLOWS.is_shipped(name):
-        title, scales, parameters = DECLARED[name]
-        return Declaration(name, title, scales, tuple(Parameter(*texts) for texts in parameters))
+        title, scales, takes_law, parameters = DECLARED[name]
+        return Declaration(name, title, scales, takes_law, tuple(Parameter(*parts) for parts in parameters))
     return declaration_of(find(name))
 
 
@@ -59,29 +72,27 @@ def declaration_of(flow: "type[Flow]") -> Declaration:
     """What the class declares."""
     from dataclasses import fields
 
-    from .base import allowed
-
-    parameters = (Parameter(item.name, str(item.default), allowed(item.metadata), _meaning(flow, item))
-                  for item in fields(flow))
-    return Declaration(flow.name, flow.title, flow.scales, tuple(parameters))
+    parameters = (Parameter(item.name, str(item.default), _rules(item), _searched(flow, item)) for item in fields(flow))
+    return Declaration(flow.name, flow.title, flow.scales, hasattr(flow, "under"), tuple(parameters))
 
 
-def _meaning(flow: Any, item: Any) -> str:
-    """What a parameter means, and where neutral values of it are looked for."""
-    from .base import numeric, span_of
+def _rules(item: Any) -> dict[str, Any]:
+    return {name: item.metadata[name] for name in _RULES if name in item.metadata}
 
-    if not numeric(item):
-        return item.metadata["meaning"]
-    low, high = span_of(flow, item.name)
-    return f"{item.metadata['meaning']}; searched from {low:g} to {high:g}"
+
+def _searched(flow: Any, item: Any) -> str:
+    """Where neutral values of a parameter are looked for, "" where it has none."""
+    from .base import span_of
+
+    return "{:g} to {:g}".format(*span_of(flow, item.name)) if numeric(item) else ""
 
 
 def written(flows: "Iterable[type[Flow]]") -> str:
     """The text of `declared.py`."""
     lines = []
-    for name, title, scales, parameters in map(declaration_of, flows):
-        lines += [f"    {name!r}: (", f"        {title!r},", f"        {scales!r},", "        ("]
-        lines += [f"            {tuple(texts)!r}," for texts in parameters]
+    for name, title, scales, takes_law, parameters in map(declaration_of, flows):
+        lines += [f"    {name!r}: (", *(f"        {part!r}," for part in (title, scales, takes_law)), "        ("]
+        lines += [f"            {tuple(parts)!r}," for parts in parameters]
         lines += ["        ),", "    ),"]
     return _ABOVE + "\n".join(line + "  # noqa: E501" * (len(line) > 120) for line in lines) + "\n}\n"
 

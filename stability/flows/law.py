@@ -24,7 +24,7 @@ import numpy as np
 
 from ..errors import ParameterError
 from . import sources
-from .base import check_parameter
+from .rules import check_parameter
 
 _AT_REST, _RAPID = 1e-200, 1e200  # inertial numbers that stand for 0 and for infinity
 _STEP = 1e-30  # of the imaginary part by which mu(I) is differentiated

@@ -31,6 +31,7 @@ _AGREEMENT = 0.03  # of the surface mode with its long-wave limit, in value and 
 _CONFIRMED = 3  # wavenumbers in a row, each a part of the last, at which it must agree
 _NO_FARTHER = 1.5, 1e-3  # factor in its distance from the limit that each may have over the one before, and a floor
 _TENDS, _CLOSE = 0.5, 1e-3  # limit of the difference over that at the last of them where a law is wrong; its accuracy
+_GLANCE = 0.3  # relative distance of a rate from a long-wave limit at which a mode that is foreseen may be meant
 _FEW = 3  # wavenumbers between two nodes that are refined one by one
 _DRIFT = 0.01  # largest relative difference of a refined rate from its interpolation
 _ASTRAY = 0.5  # largest deviation of the overlap with the next node from 1
@@ -40,11 +41,12 @@ class Branch:
     """The mode `start` followed to any wavenumber; `solver` refines what is asked for, `rough` walks.
 
     `lost` maps a side, 1 for rising k and -1 for falling k, to the reason why the walk ended there. `seen` are modes
-    that were looked at before the start was found.
+    that were looked at before the start was found; `final` tells that the start is as `solver` has it.
     """
 
-    def __init__(self, solver: "Solver", start: "Mode", rough: "Solver | None" = None, seen: Any = ()) -> None:
-        self.solver, self.start, self._seen = solver, start, seen
+    def __init__(self, solver: "Solver", start: "Mode", rough: "Solver | None" = None, seen: Any = (),
+                 final: bool = False) -> None:
+        self.solver, self.start, self._seen, self._final = solver, start, seen, final
         rough = rough or solver.rough(_ROUGH)
         self._walks = {side: Walk(rough, start, solver) for side in (1, -1)}
         self.lost = {}
@@ -117,6 +119,8 @@ class Branch:
         `known` is one near by that is resolved, if there is one: it tells which degree to try.
         """
         near = nodes[index]
+        if self._final and near is self.start and k == near.k:
+            return near
         try:
             if len(nodes) > 1 and k != near.k:
                 degree = self.solver.next_degree(known) if known else 0
@@ -258,9 +262,9 @@ def _glance(solver: Any, k: Any, limit: Any, exponent: Any, above: Any = None) -
 
     `above` is the one that was found at the wavenumber before, if any.
     """
-    vectors = (above.degree, above.x, above.y) if above else None
+    vectors, rate = (above.degree, above.x, above.y) if above else None, limit / solver.width(k)
     try:
-        mode = solver.solve(k, limit / solver.width(k), vectors, glance=True)
+        mode = solver.foreseen(k, rate, _GLANCE) or solver.solve(k, rate, vectors, glance=True)
     except ModeLost:
         return None, np.inf
     return mode, _distance(mode, limit, exponent)

@@ -37,7 +37,7 @@ def neglected(solver: "Solver", k: Any, degree: int, eigen: Any) -> Any:
 def _edge(pencil: Any, layer: Any, end: Any, x: Any) -> Any:
     """The fields of a mode at an edge of a layer."""
     ends = chebyshev.at(np.array([float(end)]), pencil.degree)[0]
-    return SimpleNamespace(**{field: ends @ x[pencil.columns[f"{layer}.{field}"]] for field in FIELDS})
+    return SimpleNamespace(**{field: ends @ pencil.field(x, f"{layer}.{field}") for field in FIELDS})
 
 
 def belongs_to_cut(solver: "Solver", mode: Any) -> Any:

@@ -28,10 +28,15 @@ _SMALL = 10  # degree of the pencil whose finite eigenvalues are counted
 
 def dense_degrees(solver: "Solver", first: int, step: int = 1) -> list[int]:
     """Degrees for dense problems, from rung `first` on, as far as one takes no longer than about a second."""
-    layers = len(solver.assembly.system.fields)
-    affordable = [degree for degree in solver.degrees if degree * layers <= _LARGEST] or solver.degrees[:1]
+    affordable = [degree for degree in solver.degrees if unknowns(solver, degree) <= _LARGEST] or solver.degrees[:1]
     chosen = list(affordable[first::step])
     return chosen if chosen[-1:] == list(affordable[-1:]) else [*chosen, affordable[-1]]
+
+
+def unknowns(solver: "Solver", degree: int) -> int:
+    """How many there are at a degree, roughly."""
+    structure = solver.assembly.system.structure
+    return degree * structure.fields // structure.stride
 
 
 def finite_rates(solver: "Solver", degree: int, symbols: dict[str, tuple[Any, ...]]) -> np.ndarray:
@@ -72,10 +77,12 @@ def _eigenvalues(g: np.ndarray, rank: int | None) -> np.ndarray:
 
 
 def _finite_count(solver: "Solver", degree: int) -> int:
-    """How many eigenvalues are finite: one per degree for every layer that carries the rate, plus a constant."""
+    """How many eigenvalues are finite: one per coefficient for every layer that carries the rate, plus a constant."""
     system = solver.assembly.system
-    count = smallest_count(Pattern(system.pattern, proxy(solver.assembly)))
-    return count + (degree - _SMALL) * system.dynamic_layers
+    stride = system.structure.stride
+    small = _SMALL + (degree - _SMALL) % stride
+    count = smallest_count(Pattern(system.pattern, small, proxy(solver.assembly)))
+    return count + (degree - small) // stride * system.dynamic_layers
 
 
 @dataclass(frozen=True)
@@ -83,12 +90,13 @@ class Pattern:
     """What the number of finite eigenvalues depends on, and an assembly that has it: a proxy, to keep no matrices."""
 
     pattern: tuple
+    degree: int
     assembly: Any = field(compare=False)
 
 
 @lru_cache(maxsize=32)
 def smallest_count(structure: "Pattern") -> int:
-    """Finite eigenvalues at the smallest degree: read off the gap in theta with all symbols 1."""
-    small = structure.assembly.generic(_SMALL)
+    """Finite eigenvalues at a small degree: read off the gap in theta with all symbols 1."""
+    small = structure.assembly.generic(structure.degree)
     sizes = np.abs(_theta(small, np.ones(len(small.parts)))[0])
     return int(np.argmin(sizes[1:] / np.maximum(sizes[:-1], np.finfo(float).tiny))) + 1

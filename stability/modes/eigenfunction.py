@@ -22,7 +22,6 @@ _POINTS = 1537  # of a layer, among which |u| is largest
 _BISECTIONS = 60
 _ROUNDING = 1e-12  # of the thickness of the flow: heights this little outside lie on the edge
 _AT_REST = 1e-10  # amplitude / max |u| below which a surface does not take part in a mode
-_ODD_WITH_W = np.array([-1, 1, 1, -1, -1])  # parity of u, w, t, n, p relative to that of w
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,18 +60,17 @@ class Eigenfunction:
     def __init__(self, mode: Mode) -> None:
         flow, solver = mode.flow, Solver(mode.flow)
         mode = sharpened(solver, mode)
-        columns = solver.pencil(mode.degree).columns
-        self.k, self.degree, self.order, self.reflection = mode.k, mode.degree, flow.order, flow.reflection
+        pencil = solver.pencil(mode.degree)
+        self.k, self.degree, self.order = mode.k, mode.degree, flow.order
         self.layers = flow.layers(SimpleNamespace(**{name: value[0] for name, value in solver.symbols(mode.k).items()}))
         self._base = [resolved(flow, self.layers, index, _velocities) for index in range(len(self.layers))]
         thickness = [float(layer.height(np.array(1.0))) for layer in self.layers]
         self.edges = flow.lowest + np.concatenate(([0.0], np.cumsum(thickness)))
-        self.high = self.edges[-1]
-        self.low = 2 * self.edges[0] - self.high if self.reflection else self.edges[0]
+        self.low, self.high = self.edges[0], self.edges[-1]
         self._slack = _ROUNDING * (self.high - self.low)
-        self._series = [np.array([mode.x[columns[f"{layer.name}.{field}"]] for field in FIELDS]).T
+        self._series = [np.array([pencil.field(mode.x, f"{layer.name}.{field}") for field in FIELDS]).T
                         for layer in self.layers]
-        amplitudes = {name: complex(mode.x[columns[name]][0]) for name in flow.surfaces}
+        amplitudes = {name: complex(mode.x[pencil.columns[name]][0]) for name in flow.surfaces}
         self._scale = 1 / self._reference(next(iter(amplitudes.values()), 0.0))
         self.surfaces = {name: value * self._scale for name, value in amplitudes.items()}
 
@@ -86,28 +84,25 @@ class Eigenfunction:
 
     def at(self, z: Any) -> Fields:
         """Return the `Fields` at heights z, a number or an array; raises ParameterError outside the layers."""
-        heights, parts, mirrored = self.placed(z)
+        heights, parts = self.placed(z)
         values = np.zeros((5, heights.size), complex)
         for index, here, s in parts:
             values[:, here] = self._at(index, s)
-        values[:, mirrored] *= self.reflection * _ODD_WITH_W[:, None]
         u, w, t, n, p = values.reshape(5, *heights.shape)
         return Fields(heights, u, w, t, n, p, self.surfaces)
 
-    def placed(self, z: Any) -> tuple[np.ndarray, list[tuple[int, np.ndarray, np.ndarray]], np.ndarray]:
-        """Heights as an array; for each layer its number, which heights lie in it and where, 0 <= s <= 1; and which are
-        mirrored. The last three are flat. Raises ParameterError outside the layers."""
+    def placed(self, z: Any) -> tuple[np.ndarray, list[tuple[int, np.ndarray, np.ndarray]]]:
+        """Heights as an array; for each layer its number, which heights lie in it and where, 0 <= s <= 1, both flat.
+        Raises ParameterError outside the layers."""
         heights = _heights(z)
         flat = heights.ravel()
         outside = flat[~((flat >= self.low - self._slack) & (flat <= self.high + self._slack))]
         if len(outside):
             low, high = (round(edge / self._slack) * self._slack for edge in (self.low, self.high))
             raise ParameterError(f"z must lie in the layers of the flow, [{low:g}, {high:g}] (got {outside[0]:g})")
-        mirrored = flat < self.edges[0] - self._slack
-        inside = np.where(mirrored, 2 * self.edges[0] - flat, flat)
-        layer_of = np.searchsorted(self.edges[1:-1], inside - self._slack)
+        layer_of = np.searchsorted(self.edges[1:-1], flat - self._slack)
         masks = [layer_of == index for index in range(len(self.layers))]
-        return heights, [(index, here, self._s(index, inside[here])) for index, here in enumerate(masks)], mirrored
+        return heights, [(index, here, self._s(index, flat[here])) for index, here in enumerate(masks)]
 
     def profiles(self, count: int = 401) -> list[Fields]:
         """The fields on each layer from edge to edge, at `count` heights."""

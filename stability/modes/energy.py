@@ -76,11 +76,12 @@ def energy(solver: Solver, k: float, degree: int) -> "Energy":
         root = np.sqrt(weights * np.abs(base.stress * base.rho * base.dz))
         values = _values(degree, length)
         for field, row, size in (("v", "along", stretch * base.g), ("w", "across", width)):
-            rows = pencil.rows[f"{layer.name}: momentum {row}"]
-            dual = _dual(degree, length, len(rows))
-            state.append(_spread(pencil, pencil.columns[f"{layer.name}.{field}"], (root * size)[:, None] * values))
+            name, equation = f"{layer.name}.{field}", f"{layer.name}: momentum {row}"
+            orders, rows = pencil.layout.orders[name], pencil.layout.orders[equation]
+            state.append(_spread(pencil, pencil.columns[name], (root * size)[:, None] * values[:, orders]))
+            dual = _dual(degree, length, rows[-1] + 1)[:, rows]
             unit = (1j / stretch if field == "v" else 1) / base.stress
-            adjoint.append(_spread(pencil, rows, unit * root[:, None] * dual))
+            adjoint.append(_spread(pencil, pencil.rows[equation], unit * root[:, None] * dual))
             state[-1] = state[-1] * (1j if field == "v" else 1)
     for surface in flow.surfaces:
         state.append(_spread(pencil, pencil.columns[surface], np.ones((1, 1))))
@@ -91,7 +92,7 @@ def energy(solver: Solver, k: float, degree: int) -> "Energy":
 def condition_numbers(modes: tuple[Any, ...], solver: Solver | None = None) -> np.ndarray:
     """Return the condition numbers (modes,) of eigenvalues of one flow, or of its symmetry classes, in the energy norm.
 
-    Half the domain gives the same number as the whole. `solver` is that of the flow, if there is one already.
+    `solver` is that of the flow, if there is one already.
 
     They are numbers without units, 1 for a normal operator. Raises nothing of its own.
 

@@ -6,7 +6,6 @@ judged as if it had found them itself: what is foreseen saves work and decides n
 """
 
 from collections.abc import Iterator
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,8 +16,7 @@ if TYPE_CHECKING:
     from .mode import Mode
     from .solver import Solver
 
-_CLOSE = 0.05  # largest relative distance of a rate from the one expected, if the walk knows what to expect
-_SIMILAR = 1.5  # largest ratio of degrees that are made the same
+_SIMILAR = 2.2  # largest ratio of degrees that are made the same
 
 
 class Foresight:
@@ -28,7 +26,7 @@ class Foresight:
         solver.prepare(np.array(list(known)))
         self._likely = {mode.k: mode for mode in _refined(solver, list(known.values()))}
 
-    def at(self, k: float, rate: complex, part: float = _CLOSE) -> "Mode | None":
+    def at(self, k: float, rate: complex, part: float) -> "Mode | None":
         """The mode foreseen at k if its rate is this one to a small part of it, or None."""
         mode = self._likely.get(k)
         return mode if mode and abs(mode.rate - rate) < part * abs(rate) else None
@@ -45,10 +43,9 @@ def _refined(solver: "Solver", known: "list[Mode]") -> Iterator[Any]:
 
 
 def _groups(modes: "list[Mode]") -> list[tuple[Any, ...]]:
-    """Modes that are refined together, each with the degree: one alone at its degree joins one alone at the next."""
-    groups = {degree: [mode for mode in modes if mode.degree == degree] for degree in {mode.degree for mode in modes}}
-    degrees = sorted(groups)
-    for lower, higher in pairwise(degrees):
-        if len(groups[lower]) == len(groups[higher]) == 1 and higher < _SIMILAR * lower:
-            groups[higher] += groups.pop(lower)
-    return sorted(groups.items())
+    """Modes that are refined together, each group with the largest degree among its own: similar ones share it."""
+    groups: dict[int, list[Mode]] = {}
+    for mode in sorted(modes, key=lambda mode: -mode.degree):
+        top = next((degree for degree in groups if degree <= _SIMILAR * mode.degree), mode.degree)
+        groups.setdefault(top, []).append(mode)
+    return list(groups.items())

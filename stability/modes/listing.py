@@ -15,8 +15,9 @@ import numpy as np
 
 from ..errors import ModeLost, naming
 from ..status import doubtful, is_resolved
+from .accuracy import DEGREES
 from .cutoff import belongs_to_cut
-from .dense import dense_degrees, finite_rates
+from .dense import dense_degrees, finite_rates, unknowns
 from .winding import winding
 
 if TYPE_CHECKING:
@@ -135,7 +136,8 @@ def listed(solver: "Solver", k: float, count: int) -> "Listing":
 
 def _listed(solver: "Solver", k: float, count: int) -> "Listing":
     classes, failures = [_Class(half, k) for half in solver.halves], 0
-    for degree in dense_degrees(solver, _rung(solver, FIRST, _BASE[0]), 2):
+    part = classes[0].solver
+    for degree in dense_degrees(part, _rung(part, FIRST, _BASE[0]), 2):
         for one in classes:
             one.look(degree)
         if not len(_all_rates(classes)):  # no mode of an unbounded fluid is known yet
@@ -152,11 +154,13 @@ def _listed(solver: "Solver", k: float, count: int) -> "Listing":
 
 
 def _rung(solver: "Solver", first: int, part: float) -> int:
-    """The rung to start from: at which the base flow is resolved where what does not settle is put aside."""
-    if not solver.flow.unbounded:
-        return first
-    enough = [rung for rung, degree in enumerate(solver.degrees) if degree >= part * solver.assembly.system.longest]
-    return max(first, min(enough, default=0))
+    """The rung to start from, `first` where all coefficients count: where what does not settle is put aside, one at
+    which the base flow is resolved."""
+    least = solver.rung_degree(DEGREES[first])
+    if solver.flow.unbounded:
+        least = max(least, min((degree for degree in solver.degrees
+                                if degree >= part * solver.assembly.system.longest), default=0))
+    return solver.degrees.index(least)
 
 
 def _all_rates(classes: "list[_Class]") -> np.ndarray:
@@ -228,10 +232,10 @@ def near_neutral(solver: "Solver", k: float, depth: float, rung: int) -> tuple[A
     Where that takes a large dense problem, a part of the depth may do. Raises ModeLost where they do not settle.
     """
     one = _Class(solver, k)
-    degrees = dense_degrees(solver, _rung(solver, max(rung, _LOWEST), _BASE[1]), 1)
+    degrees = dense_degrees(solver, max(rung, _rung(solver, _LOWEST, _BASE[1])), 1)
     for degree in degrees:
         one.look(degree)
-        costly = degree * len(solver.assembly.system.fields) > _COSTLY
+        costly = unknowns(solver, degree) > _COSTLY
         for line in (-depth, -depth / 4, -depth / 16) if costly else (-depth,):
             if one.settled(line):
                 modes = one.refined(line)

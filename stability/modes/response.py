@@ -61,9 +61,9 @@ def shear_response(solver: "Solver", k: Any, degree: int, eigen: Any) -> Any:
     count = degree + solver.assembly.system.longest + 8  # products are then summed exactly
     s = chebyshev.points(count)
     base, width = layer.profile(s), solver.width(k)
-    v, w = (_values(chebyshev.basis(degree)[0] @ eigen.x[pencil.columns[f"{layer.name}.{field}"]], count)
+    v, w = (_values(chebyshev.basis(degree)[0] @ pencil.field(eigen.x, f"{layer.name}.{field}"), count)
             for field in ("v", "w"))
-    along, across = (_values(_doubled(eigen.y.conj()[pencil.rows[f"{layer.name}: momentum {row}"]]), count)
+    along, across = (_values(_doubled(pencil.adjoint(eigen.y.conj(), f"{layer.name}: momentum {row}")), count)
                      for row in ("along", "across"))
     scale = 1j * k * width * base.rho * base.dz / count
     return ShearResponse(s, -scale * (along * v + width * across * w), scale * along * w,

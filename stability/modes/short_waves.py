@@ -114,6 +114,7 @@ def _somewhere(flow: "Flow", points: int) -> bool:
 _remembered = lru_cache(maxsize=_REMEMBERED)(_somewhere)
 
 
+@lru_cache(maxsize=8)
 def _points(count: int) -> np.ndarray:
     """Points (count,) of a layer from edge to edge, dense near the edges."""
     return (1 - np.cos(np.pi * np.arange(count) / (count - 1))) / 2
@@ -128,11 +129,18 @@ def _looked_at(flow: "Flow", points: int) -> Iterator[Any]:
 
 def _coefficients(layer: "Layer", s: np.ndarray) -> np.ndarray:
     """beta / eta, alpha, eta and rho at the points s, as arrays; the limit where an edge gives 0/0."""
+    at = _given(layer, s)
+    limitless = np.isnan(at)
+    return np.where(limitless, _given(layer, np.clip(s, _INSIDE, 1 - _INSIDE)), at) if limitless.any() else at
+
+
+def _given(layer: "Layer", s: np.ndarray) -> np.ndarray:
+    values = np.empty((4, len(s)))
     with np.errstate(divide="ignore", invalid="ignore"):
-        at, inside = (np.array([np.broadcast_to(value, s.shape)
-                                for value in (base.beta / base.eta, base.alpha, base.eta, base.rho)], dtype=float)
-                      for base in (layer.base(s), layer.base(np.clip(s, _INSIDE, 1 - _INSIDE))))
-    return np.where(np.isnan(at), inside, at)
+        base = layer.base(s)
+        for row, value in zip(values, (np.divide(base.beta, base.eta), base.alpha, base.eta, base.rho), strict=True):
+            row[:] = value
+    return values
 
 
 def _strips(layer: "Layer", s: np.ndarray, ill: np.ndarray) -> list[Any]:

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 _FAR_BELOW = 1e-15  # relative truncation error that is aimed at with the default tolerance
 _OVERSOLVED = 1e-7  # truncation over rounding below which one rung less of the degree suffices as well
 _VECTOR, _ROUGHEST = 0.01, 1e-6  # error of vectors without bars, in units of the tolerance; the largest
-_GLANCE = 0.3  # relative distance of a rate from a long-wave limit at which a mode may be meant
 _SCATTER = 40.0  # error of a slope from vectors right to rounding, in units of error times 1 or 1/k (measured)
+_BLIND = 12  # degree to try first where nothing is known
 _LEAST = 32  # degree of the smallest table of entries
 _DECADES = 3.0  # that coefficients span at most where only structure counts: eigenvalues stand out from rounding
 _SMALL = 1024  # degree times terms of the longest series up to which layouts, some megabytes each, are kept ...
@@ -183,10 +183,7 @@ class Solver:
         `vectors` is (degree, x, y) of a nearby mode, if known. Raises ModeLost where the iteration
         does not settle; a mode still unresolved at the largest degree is returned with that status.
         """
-        likely = self.foresight and self.foresight.at(k, rate, *((_GLANCE,) if glance else ()))
-        if likely and (glance or self.fits(likely)):
-            return likely
-        start = self.degrees.index(degree or (vectors[0] if vectors else self.degrees[min(2, len(self.degrees) - 1)]))
+        start = self.degrees.index(degree or (vectors[0] if vectors else self.rung_degree(_BLIND)))
         for degree in self.degrees[start:]:
             pencil = self.pencil(degree)
             x, y = transfer(self, vectors, degree) if vectors else (None, None)
@@ -197,9 +194,19 @@ class Solver:
             rate, vectors = eigen.rate, (degree, eigen.x, eigen.y)
         return mode
 
+    def foreseen(self, k: float, rate: complex, part: float) -> "Mode | None":
+        """The mode that is foreseen at k, if it is resolved and its rate is this one to a small part of it."""
+        likely = self.foresight and self.foresight.at(k, rate, part)
+        return likely if likely and self.fits(likely) else None
+
     def refined(self, mode: Mode) -> Mode:
         """Return a mode of a rougher solver as this one has it."""
         return self.solve(mode.k, mode.rate, (mode.degree, mode.x, mode.y), self.likely_degree(mode))
+
+    def rung_degree(self, least: int) -> int:
+        """The first degree at which a field has as many coefficients as at degree `least` where all of them count."""
+        least *= self.assembly.system.structure.stride
+        return next((degree for degree in self.degrees if degree >= least), self.degrees[-1])
 
     def likely_degree(self, mode: Mode) -> int:
         """The degree to try first where a rougher solver has found this mode: a higher one where its own is too low."""

@@ -25,6 +25,7 @@ _CLOSE = 0.02  # step below which a collision is looked for, and a rough walk go
 _NARROW = 5e-3  # step that tells of another mode near by
 _PACE = Pace(0.3, _LARGEST_STEP, 1e-8)
 _PREDICTION = 0.05  # relative error of the predictor at which the step length is kept
+_LIKELY = 0.05  # largest relative distance of a mode that is foreseen from where it is expected
 _ORDER, _EXACT = 4, 1e-12  # of the error of the predictor in the step; an error too small to divide by
 _FLAT = 1e-9  # bend of a step, relative to the rate, that is never refused: rates need not be exact on a rough walk
 _REAL = 1e-10  # largest imaginary part, relative, of a rate that is real but for rounding
@@ -137,12 +138,12 @@ class Walk(Walker):
         if self.stuck:
             raise self._lost(f"no mode overlaps its neighbour at k = {k:.6g}")
 
-    def correct(self, to: float, guess: tuple[Any, ...]) -> "Mode":
-        rate, vectors = guess
-        return self.solver.solve(to, rate, vectors, self.solver.next_degree(self.now))
+    def correct(self, to: float, guess: complex) -> "Mode":
+        return self.solver.foreseen(to, guess, _LIKELY) or self.solver.solve(
+            to, guess, self._vectors(to), self.solver.next_degree(self.now))
 
-    def factor(self, new: "Mode", guess: tuple[Any, ...]) -> float:
-        miss = abs(new.rate - guess[0]) / (abs(new.rate) + abs(new.k * new.rate_slope)) + _EXACT
+    def factor(self, new: "Mode", guess: complex) -> float:
+        miss = abs(new.rate - guess) / (abs(new.rate) + abs(new.k * new.rate_slope)) + _EXACT
         return min(2.0, max(0.5, (_PREDICTION / miss) ** (1 / _ORDER)))
 
     def accept(self, to: Any, new: Any) -> None:
@@ -155,22 +156,22 @@ class Walk(Walker):
         now = self.solver.solve(self.now.k, self.now.rate, (self.now.degree, self.now.x, self.now.y))
         self.segments[-1][-1] = self.now = now
 
-    def trusted(self, mode: "Mode", guess: tuple[Any, ...]) -> bool:
+    def trusted(self, mode: "Mode", guess: complex) -> bool:
         """Whether the mode is resolved well enough to be followed, if not to the tolerance."""
         return mode.error <= max(_TRUST, self.solver.tolerance) * abs(mode.sigma)
 
-    def smooth(self, mode: "Mode", guess: tuple[Any, ...]) -> bool:
+    def smooth(self, mode: "Mode", guess: complex) -> bool:
         """Whether the rates and slopes at both ends of the step belong to one smooth curve in log k."""
         h, rise = log(mode.k / self.now.k), mode.rate - self.now.rate
         a, b = (h * end.k * end.rate_slope for end in (self.now, mode))
         return abs(rise - (a + b) / 2) <= _BEND * (abs(rise) + abs(a) + abs(b)) + _FLAT * abs(mode.rate)
 
-    def same_kind(self, mode: "Mode", guess: tuple[Any, ...]) -> bool:
+    def same_kind(self, mode: "Mode", guess: complex) -> bool:
         """Real stays real and complex stays complex, unless a collision has been found."""
         real = abs(mode.rate.imag) < _REAL * abs(mode.rate)
         return not self.solver.pencil(mode.degree).real or real == (self.now.rate.imag == 0)
 
-    def overlaps(self, mode: "Mode", guess: tuple[Any, ...]) -> bool:
+    def overlaps(self, mode: "Mode", guess: complex) -> bool:
         """Whether the new and the old eigenvectors are biorthogonal partners."""
         return abs(self.solver.overlap(self.now, mode) - 1) < _OVERLAP
 
@@ -178,21 +179,27 @@ class Walk(Walker):
         return ModeLost(f"{self.solver.flow}: the mode is lost at k = {self.now.k:.6g}, "
                         f"sigma = {_told(self.now):.6g}: {why}")
 
-    def foresee(self, k: float) -> tuple[Any, ...]:
-        """Extrapolate rate and vectors to k from the last two modes."""
+    def foresee(self, k: float) -> complex:
+        """Extrapolate the rate to k from the last two modes."""
         now, before = self.now, self.before
         t = log(k / now.k)
         slope = now.k * now.rate_slope
-        vectors = (now.degree, now.x, now.y)
         if before is None:
-            return now.rate + slope * t, vectors
+            return now.rate + slope * t
         h = log(now.k / before.k)
         secant = (now.rate - before.rate) / h
         bend = (slope - secant) / h
         twist = (slope + before.k * before.rate_slope - 2 * secant) / h**2
-        rate = now.rate + t * (slope + t * (bend + twist * (t + h)))
+        return now.rate + t * (slope + t * (bend + twist * (t + h)))
+
+    def _vectors(self, k: float) -> tuple[int, np.ndarray, np.ndarray]:
+        """Degree and vectors, extrapolated to k like the rate."""
+        now, before = self.now, self.before
+        if before is None:
+            return now.degree, now.x, now.y
+        ratio = log(k / now.k) / log(now.k / before.k)
         x, y = transfer(self.solver, (before.degree, before.x, before.y), now.degree)
-        return rate, (now.degree, _extrapolate(now.x, x, t / h), _extrapolate(now.y, y, t / h))
+        return now.degree, _extrapolate(now.x, x, ratio), _extrapolate(now.y, y, ratio)
 
     def _cross(self, k: float) -> bool:
         """Step across a collision of two real modes (or of a conjugate pair) just ahead; True if there is one.

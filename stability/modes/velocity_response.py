@@ -26,11 +26,11 @@ def density(mode: Any, z: Any) -> Any:
     function = Eigenfunction(mode)
     degree = next((degree for degree in solver.degrees if degree >= 2 * mode.degree), solver.degrees[-1])
     mode = solver.solve(mode.k, mode.rate, (mode.degree, mode.x, mode.y), degree, glance=True)
-    heights, parts, _ = function.placed(z)
+    heights, parts = function.placed(z)
     found = np.zeros(heights.size, complex)
     for index, here, s in parts:
         found[here] = _density(solver, mode, index, s)
-    return (found / (2 if mode.flow.reflection else 1)).reshape(heights.shape)
+    return found.reshape(heights.shape)
 
 
 def panel(mode: Any) -> Any:
@@ -50,8 +50,8 @@ def _density(solver: Solver, mode: Any, index: Any, s: Any) -> Any:
     pencil, layer = solver.pencil(mode.degree), solver.flow.layers(None)[index]
     base, k, width = layer.profile(s), mode.k, solver.width(mode.k)
     values = chebyshev.at(s, mode.degree)
-    v, w = (values @ mode.x[pencil.columns[f"{layer.name}.{field}"]] for field in ("v", "w"))
-    along, across = (_adjoint(mode.y[pencil.rows[f"{layer.name}: momentum {row}"]]) for row in ("along", "across"))
+    v, w = (values @ pencil.field(mode.x, f"{layer.name}.{field}") for field in ("v", "w"))
+    along, across = (_adjoint(pencil.adjoint(mode.y, f"{layer.name}: momentum {row}")) for row in ("along", "across"))
     x = 2 * s - 1
     slope = 2 * L.legval(x, L.legder(along)).conj() / base.dz
     return -1j * k * width * base.rho * (2 * v * L.legval(x, along).conj() + width * w * L.legval(x, across).conj()

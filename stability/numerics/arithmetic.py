@@ -84,9 +84,9 @@ def _iterated(b: Callable[..., Any], solve: Callable[..., Any], vector: np.ndarr
     if vector.ndim > 1:
         pivot = pivot, np.arange(vector.shape[1])
     first = solve(b(vector))
-    start, first = vector / vector[pivot], first / first[pivot]
+    start, first = vector * (1 / vector[pivot]), first * (1 / first[pivot])
     second = solve(b(first))
-    second = second / second[pivot]
+    second = second * (1 / second[pivot])
     last = second - first
     return second, last, (size_of(first - start), size_of(last), size_of(second))
 

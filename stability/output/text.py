@@ -7,7 +7,6 @@ import os
 import tempfile
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
-from html import escape
 from math import isinf
 from pathlib import Path
 from stat import S_ISDIR
@@ -124,6 +123,8 @@ def _table(rows: list[Any], digits: int, gap: int) -> str:
 
 def html_table(title: str, rows: list[Row], gap: int | None = None) -> str:
     """Return rows as a table in HTML, with a row of dots after the first `gap` ones if some are left out there."""
+    from html import escape  # slow to import
+
     digits = _LAYOUTS[0][0]
     lines = ["".join(f"<td>{escape(_cell(key, value, digits))}</td>" for key, value in row.items()) for row in rows]
     if gap is not None:

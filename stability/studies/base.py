@@ -15,6 +15,7 @@ from ..output.panels import Axis, Curve, Panel
 from ..output.record import Record
 from ..output.text import Row
 from ..status import RESOLVED
+from .choices import HEIGHTS, MOST_HEIGHTS
 
 if TYPE_CHECKING:
     from ..equations.layer import Layer
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 HEIGHT = Axis("z", "height $z$")
 VELOCITY, SHEAR_RATE = Axis("U", "velocity $U$"), Axis("dU", "shear rate $U'$")
 INERTIAL_NUMBER, STRESS = Axis("inertial_number", "inertial number $I$"), Axis("shear_stress", "stress")
-HEIGHTS, MOST_HEIGHTS = 41, 100_000  # heights of a layer: usual, largest number
 
 
 @dataclass(frozen=True, repr=False)

@@ -39,7 +39,7 @@ def zeros_at(land: Landscape, k: float) -> "tuple[list[Zero], dict[Any, Any], se
     zeros, trouble, grows = [], {}, set()
     for half, plane in enumerate(land.rough):
         columns = []
-        for value in land.values():
+        for value in land.values:
             try:
                 modes = _modes(plane, k, value)
             except ParameterError:

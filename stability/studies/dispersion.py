@@ -23,6 +23,7 @@ from ..output.panels import GROWTH_RATE, LINE, PHASE_SPEED, POINTS, WAVENUMBER, 
 from ..output.record import Record
 from ..output.text import Row, measured
 from ..status import INTERRUPTED, LOST, Status, as_outgrown, is_resolved
+from .choices import MODES
 from .outgrown import Outgrown, outgrown
 
 if TYPE_CHECKING:
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
 
     from ..flows import Flow
 
-MODES = ("surface", "leading", "most-unstable")
 GROUP_SPEED = Axis("group_speed", "group speed $c_g$")
 
 _NOT_LOOKED = "the flow is ill posed; whether an internal mode outgrows the surface mode is told with rivals=True"
@@ -279,7 +279,7 @@ def leading_branch(solver: Solver, known: Any = None) -> Branch:
     best = max(mode.growth_rate - mode.error for mode in rivals)
     mode = max((mode for mode in rivals if mode.growth_rate + mode.error >= best), key=lambda mode: mode.phase_speed)
     (half,) = (half for half in solver.halves if half.flow == mode.flow)
-    return Branch(half, mode, rough_solver(half, known))
+    return Branch(half, mode, rough_solver(half, known), final=True)
 
 
 def _most_unstable(solver: Solver, wavenumbers: Any) -> Iterator[Any]:

@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 
 from ..errors import ParameterError, StabilityError
-from ..flows.base import check_flow, numeric, span_of
+from ..flows.base import check_flow, span_of
+from ..flows.rules import numeric
 from ..modes.crests import crest_mode
 from ..modes.eigenfunction import Eigenfunction
 from ..output.panels import GROWTH_RATE, PHASE_SPEED, WAVENUMBER

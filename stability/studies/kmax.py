@@ -33,12 +33,12 @@ from ..output.record import Record
 from ..output.symbols import axis_label, symbol_of, value_text
 from ..output.text import Row, measured
 from ..status import Kind, Status, as_outgrown, is_outgrown, is_resolved, unresolved
+from .choices import CREST_MODES
 from .outgrown import faster
 
 if TYPE_CHECKING:
     from ..flows import Flow
 
-CREST_MODES = ("surface", "leading")
 _OTHERS = "other local maxima"  # in figures
 _ONE = 1e-9, 1e-6  # relative distances of k, beyond the errors, and of sigma within which two maxima are one
 

@@ -18,10 +18,10 @@ from ..output.panels import GROWTH_AT_K_MAX, GROWTH_RATE, K_MAX, PHASE_SPEED, WA
 from ..output.record import Record
 from ..output.symbols import axis_label, symbol_of
 from ..output.text import Row
+from .choices import MOST_WORKERS, usual_quantity
 from .dispersion import default_mode
 from .journal import Journal
-from .pool import MOST_WORKERS
-from .request import Request, usual_quantity
+from .request import Request
 from .rounds import compute_all
 
 if TYPE_CHECKING:

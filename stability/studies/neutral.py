@@ -4,21 +4,19 @@ The line through them is followed by arclength through the plane of k and the pa
 """
 
 from collections.abc import Iterator, Mapping
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from ..checks import check_wavenumbers
-from ..errors import ModeLost, ParameterError
 from ..flows.base import check_flow
 from ..modes.accuracy import DEGREES, TOLERANCE, check_accuracy
 from ..numerics.threads import one_thread
 from ..output.panels import DOTS, PHASE_SPEED, POINTS, WAVENUMBER, Curve, Panel, scale_found, scale_of
 from ..output.text import Row
 from ..status import is_resolved, unresolved
-from .contour import passes, trace
+from .contour import Line, lines_through
 from .critical import NeutralPoint, ZeroGrowth, landscape_of, no_point, point_of, settings_of, value_axis
 from .crossings import zeros_at
 
@@ -57,7 +55,7 @@ class NeutralCurve(ZeroGrowth):
         """The value and the phase speed on the neutral curve against k."""
         known = [point for point in self.points if point.value is not None]
         status = tuple(point.status for point in known)
-        x = replace(WAVENUMBER, scale=scale_of(self.trace[:, 0]))
+        x = replace(WAVENUMBER, scale=scale_of([point.k for point in self.points]))
         k, value, error, speed = (np.array([getattr(point, name) for point in known], dtype=float)
                                   for name in ("k", "value", "error", "phase_speed"))
         curve = Curve(*self.trace.T), Curve(k, value, None, DOTS, None, error, 0, status)
@@ -93,12 +91,13 @@ def neutral_parts(flow: "Flow", vary: str, k: "ArrayLike", *, span: tuple[float,
     wavenumbers = check_wavenumbers(k)
     land = landscape_of(check_flow(flow), vary, span, None, check_accuracy(tolerance, max_degree))
     settings = {name: value for name, value in settings_of(land).items() if name != "search"}
-    drawn = np.empty((0, 2))
+    drawn: list[Line] = []
     for wavenumber in wavenumbers.tolist():
         points, lines = one_thread(_at_wavenumber)(land, wavenumber, settings, drawn, wavenumbers.min(),
                                                    wavenumbers.max())
-        drawn = np.concatenate((drawn, *lines))
-        yield NeutralCurve(flow, vary, points, np.concatenate((np.empty((0, 2)), *lines)), settings)
+        drawn += lines
+        trace = np.concatenate((np.empty((0, 2)), *(line.trace for line in lines)))
+        yield NeutralCurve(flow, vary, points, trace, settings)
 
 
 def joined_curve(parts: list[NeutralCurve]) -> NeutralCurve:
@@ -107,8 +106,8 @@ def joined_curve(parts: list[NeutralCurve]) -> NeutralCurve:
                    trace=np.concatenate([part.trace for part in parts]))
 
 
-def _at_wavenumber(land: "Landscape", k: float, settings: dict[str, Any], drawn: np.ndarray, low: float,
-                   high: float) -> tuple[Any, ...]:
+def _at_wavenumber(land: "Landscape", k: float, settings: dict[str, Any], drawn: list[Line], low: float,
+                   high: float) -> tuple[tuple[NeutralPoint, ...], list[Line]]:
     """The neutral points at one wavenumber, and the curves through those that lie on none that is drawn yet."""
     zeros, trouble, grows = zeros_at(land, k)
     points = [point_of(land, zero, settings) for zero in zeros]
@@ -121,9 +120,4 @@ def _at_wavenumber(land: "Landscape", k: float, settings: dict[str, Any], drawn:
         why = f"the neutral curve does not reach k = {k:g}: {kind} at every {land.vary} from {land.span[0]:g} to " \
               f"{land.span[1]:g}"
         points = [no_point(land.flow, land.vary, k, doubt if trouble else why)]
-    lines = []
-    for zero in zeros:
-        if not passes(np.concatenate((drawn, *lines)), k, zero.value):
-            with suppress(ModeLost, ParameterError, np.linalg.LinAlgError):
-                lines.append(trace(land, zero, low, high))
-    return tuple(points), lines
+    return tuple(points), lines_through(land, zeros, drawn, low, high)

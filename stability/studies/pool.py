@@ -14,7 +14,6 @@ from threadpoolctl import threadpool_limits
 
 from ..errors import ParameterError, WorkersLost
 
-MOST_WORKERS = 1000
 GUARD = 'a script needs `if __name__ == "__main__":` around what it does, and cannot come from standard input'
 
 

@@ -14,12 +14,12 @@ import numpy as np
 
 from ..checks import check_options, check_wavenumbers, flat, shown
 from ..errors import ParameterError
-from ..flows.base import check_flow, check_parameter, check_parameter_name
+from ..flows.base import check_flow, check_parameter_name
+from ..flows.rules import check_parameter
 from ..flows.sources import origin
 from ..modes.accuracy import Accuracy
 from ..output.text import measured
-
-QUANTITIES = ("k_max", "growth_rate", "neutral")
+from .choices import QUANTITIES, check_quantity
 
 _COLUMNS = {
     "k_max": ("k_max", "growth_rate", "phase_speed", "error", "growth_error", "maxima", "second_k_max",
@@ -28,7 +28,6 @@ _COLUMNS = {
     "neutral": ("k", "phase_speed", "error", "k_error", "status"),  # headed by the parameter that is solved for
 }
 _PIECE = {"k_max": 4, "growth_rate": 1, "neutral": 16}  # flows of a piece, neighbours along the innermost parameter
-_MOST_AXES = 3
 _MOST_POINTS = 1_000_000
 
 
@@ -46,13 +45,13 @@ class Request:
 
     def __post_init__(self) -> None:
         check_flow(self.flow)
-        self._set(quantity=check_options("quantity", self.quantity, QUANTITIES))
+        check_options("quantity", self.quantity, QUANTITIES)
         if not isinstance(self.over, Mapping):
             raise ParameterError(f"over must be a dict {{parameter: values}} (got {shown(self.over)})")
-        if not 1 <= len(self.over) <= _MOST_AXES:
-            raise ParameterError(f"over: a map has one to {_MOST_AXES} swept parameters (got {len(self.over)})")
+        if self.vary is not None:
+            check_parameter_name(self.flow, self.vary)
+        self._set(quantity=check_quantity(self.quantity, self.over, self.k, self.vary))
         self._set(over={name: self._values(name, values) for name, values in self.over.items()})
-        self._check_quantity()
         if self.k is not None:
             self._set(k=tuple(check_wavenumbers(self.k).tolist()))
         if not 1 <= self.size <= _MOST_POINTS:
@@ -66,18 +65,6 @@ class Request:
         check_parameter_name(self.flow, name)
         (item,) = (item for item in fields(self.flow) if item.name == name)
         return tuple(check_parameter(self.flow.name, item, value) for value in flat(values, f"over: {name}"))
-
-    def _check_quantity(self) -> None:
-        for name, owner, meaning in (("k", "growth_rate", "wavenumbers"),
-                                     ("vary", "neutral", "a parameter to solve for")):
-            given = getattr(self, name) is not None
-            if given != (self.quantity == owner):
-                raise ParameterError(f"{name}: " + (f"quantity {self.quantity} takes none, only {owner} does" if given
-                                                    else f"quantity {owner} needs {meaning}"))
-        if self.vary is not None:
-            check_parameter_name(self.flow, self.vary)
-        if self.vary in self.over:
-            raise ParameterError(f"vary: {self.vary} is the parameter to solve for; sweep another one")
 
     @property
     def axes(self) -> dict[str, np.ndarray]:
@@ -146,8 +133,3 @@ class GridPiece:
     @property
     def points(self) -> int:
         return len(self.flows) * len(self.k or (None,))
-
-
-def usual_quantity(k: Any, vary: Any) -> str:
-    """The quantity that is meant where none is named."""
-    return "neutral" if vary is not None else "k_max" if k is None else "growth_rate"

@@ -9,6 +9,7 @@ are a crest of their own: the sign of a in growth = a k^2 as k -> 0.
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from math import exp, log
 from typing import TYPE_CHECKING, Any
@@ -24,6 +25,7 @@ from .plane import Plane, Point
 if TYPE_CHECKING:
     from ..flows.base import Flow
     from ..modes.accuracy import Accuracy
+    from ..modes.mode import Mode
 
 _COLUMN = 0.7  # spacing of the columns, in the logarithm of the parameter
 _FEWEST = 12  # columns
@@ -88,7 +90,7 @@ class LongWaves:
     value: float
     a: float
     spread: float
-    mode: object
+    mode: "Mode"
 
 
 class Landscape:
@@ -108,9 +110,10 @@ class Landscape:
 
     def scan(self) -> None:
         """Fill the columns."""
-        self.columns = [column for value in self.values() if (column := self.column(value))]
+        self.columns = [column for value in self.values if (column := self.column(value))]
 
-    def values(self) -> Any:
+    @cached_property
+    def values(self) -> list[float]:
         """Values of the parameter from end to end of that part of the span in which the flow exists."""
         low, high = self.span
         there = [value for value in np.geomspace(low, high, _TRIED).tolist() if self._exists(value)]
@@ -187,10 +190,14 @@ class Landscape:
             covered = covered or way[-1].value == value and all(self.grows(one.point) for one in way)
             yield way
 
-    def long_waves(self) -> Iterator[Any]:
+    @cached_property
+    def long_waves(self) -> "list[LongWaves]":
+        """What is known of long waves at the values."""
+        return [one for value in self.values if (one := self.long_wave(value))]
+
+    def thresholds(self) -> "Iterator[tuple[LongWaves, LongWaves]]":
         """Yield pairs of neighbouring `LongWaves` with a of opposite signs."""
-        known = [one for column in self.columns if (one := self.long_wave(column.value))]
-        for one, other in pairwise(known):
+        for one, other in pairwise(self.long_waves):
             if one.a * other.a < 0:
                 yield self._narrowed(one, other)
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..equations.system import System
 from ..errors import ParameterError
-from ..flows.base import numeric
+from ..flows.rules import numeric
 from ..modes.eigenfunction import sharpened
 from ..modes.mode import Mode
 from ..modes.solver import Solver
@@ -166,7 +166,7 @@ class Derivative:
         slope = 0.0
         for equation, *versions in zip(here.equations, *(system.equations for system in self._systems), strict=True):
             terms = _changes(self._weights, equation.terms, [version.terms for version in versions], tables)
-            slope += _in_equation(pencil, mode, pencil.rows[equation.name], terms)
+            slope += _in_equation(pencil, mode, equation.name, terms)
         for row, terms, *versions in zip(pencil.rows["conditions"], here.conditions,
                                          *(system.conditions for system in self._systems), strict=True):
             slope += _in_condition(pencil, mode, row, _changes(self._weights, terms, versions, tables))
@@ -213,13 +213,12 @@ def _changes(weights: Any, terms: Any, versions: Any, tables: Any) -> Iterator[A
             yield unknown, change, values
 
 
-def _in_equation(pencil: Any, mode: Any, rows: Any, terms: Any) -> Any:
+def _in_equation(pencil: Any, mode: Any, equation: str, terms: Any) -> Any:
     """y^H times the terms of one equation."""
-    total = 0.0
+    total, left = 0.0, pencil.adjoint(mode.y.conj(), equation)
     for unknown, factor, series in terms:
-        _, row, column, values = chebyshev.entries([series], [unknown.endswith("'")], len(rows), pencil.degree)
-        places = pencil.columns[unknown.rstrip("'")][column]
-        total += factor * (mode.y.conj()[rows[row]] * values) @ mode.x[places]
+        _, row, column, values = chebyshev.entries([series], [unknown.endswith("'")], len(left), pencil.degree)
+        total += factor * (left[row] * values) @ pencil.field(mode.x, unknown.rstrip("'"))[column]
     return total
 
 
@@ -227,9 +226,9 @@ def _in_condition(pencil: Any, mode: Any, row: Any, terms: Any) -> Any:
     total = 0.0
     for unknown, factor, series in terms:
         name, _, end = unknown.partition("@")
-        values = mode.x[pencil.columns[name]]
-        edge = chebyshev.at(float(end), pencil.degree)[0] if end else np.ones(1)
-        total += factor * series[0] * mode.y[row].conj() * (edge @ values)
+        value = chebyshev.at(float(end), pencil.degree)[0] @ pencil.field(mode.x, name) if end else (
+            mode.x[pencil.columns[name]][0])
+        total += factor * series[0] * mode.y[row].conj() * value
     return total
 
 

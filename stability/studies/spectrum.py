@@ -21,12 +21,12 @@ from ..output.panels import GROWTH_RATE, PHASE_SPEED, POINTS, Curve, Panel
 from ..output.record import Record
 from ..output.text import Row, measured
 from ..status import INTERRUPTED, Status, is_resolved
+from .choices import MOST_MODES
 from .dispersion import dispersion
 
 if TYPE_CHECKING:
     from ..flows import Flow
 
-MOST_MODES = 200  # modes that can be asked for
 
 
 @dataclass(frozen=True, repr=False)

@@ -19,6 +19,7 @@ from ..status import RESOLVED, Status, is_resolved, unresolved
 from .ridges import BUDGET, Landscape, narrowed
 
 if TYPE_CHECKING:
+    from ..modes.mode import Mode
     from .plane import Plane, Point
     from .ridges import Crest, LongWaves
 
@@ -47,7 +48,7 @@ class Zero:
 
     k: float
     value: float
-    mode: object
+    mode: "Mode"
     error: float
     k_error: float
     status: Status
@@ -70,17 +71,18 @@ class Found:
 
 def critical_zeros(land: Landscape, long_wave: bool) -> Found:
     """Return the critical values of a landscape, or its long-wave thresholds alone."""
-    land.scan()
-    thresholds = [_threshold(*pair) for pair in land.long_waves()]
+    thresholds = [_threshold(*pair) for pair in land.thresholds()]
     if long_wave:
         why = None if thresholds else f"{land.flow}: no long-wave threshold in {land.vary} {_range(land)}"
-        return Found(_ordered(land, thresholds), (), why)
+        return Found(_ordered(thresholds, [bool(one.a <= one.spread) for one in land.long_waves]), (), why)
+    land.scan()
     zeros = [*thresholds, *_noses(land), *_beside_thresholds(land, thresholds)]
     zeros = [zero for rank, zero in enumerate(zeros) if not any(_near(zero, other) for other in zeros[:rank])]
     inner = [zero for zero in zeros if _inside(land, zero, zeros) or _others_grow(land, zero)]
-    boundaries = _doubted(land, _ordered(land, [zero for zero in zeros if zero not in inner]))
+    stable = [not column.grows and not column.trouble for column in land.columns]
+    boundaries = _doubted(land, _ordered([zero for zero in zeros if zero not in inner], stable))
     remark = "crests where another one grows were not all followed" if land.spent > BUDGET else None
-    return Found(boundaries, _ordered(land, inner), None if boundaries else _why_none(land), remark)
+    return Found(boundaries, _ordered(inner, stable), None if boundaries else _why_none(land), remark)
 
 
 def _noses(land: Landscape) -> Iterator[Any]:
@@ -201,9 +203,8 @@ def _others_grow(land: Any, zero: Any) -> Any:
     return False
 
 
-def _ordered(land: Landscape, zeros: list[Any]) -> tuple[Any, ...]:
-    """The first met from the stable side in front: from below unless the upper end of the span alone is stable."""
-    stable = [not column.grows and not column.trouble for column in land.columns]
+def _ordered(zeros: list[Any], stable: list[bool]) -> tuple[Any, ...]:
+    """The first met from the stable side in front: from below unless the upper end of what is `stable` alone is."""
     down = bool(stable) and stable[-1] and not stable[0]
     return tuple(sorted(zeros, key=lambda zero: zero.value, reverse=down))
 
@@ -243,6 +244,6 @@ def _why_none(land: Any) -> Any:
 
 
 def _range(land: Any) -> Any:
-    return f"from {land.columns[0].value:g} to {land.columns[-1].value:g}" if land.columns else \
+    return f"from {land.values[0]:g} to {land.values[-1]:g}" if land.values else \
         f"from {land.span[0]:g} to {land.span[1]:g}"
 

@@ -1,11 +1,22 @@
 """What the command line says to a slip: what was meant, and what would do."""
 
+import json
+import re
 import subprocess
 import sys
+from argparse import Namespace
+from dataclasses import fields
 
+import numpy as np
 import pytest
 
+from stability import ParameterError
 from stability.cli import main
+from stability.cli.asked import checked, swept
+from stability.cli.verbs import VERBS
+from stability.flows.catalogue import FLOWS
+from stability.flows.declaration import declared
+from stability.flows.rules import check_parameter
 
 
 @pytest.mark.parametrize(("words", "said"), [
@@ -44,12 +55,93 @@ def test_what_grows_at_every_value_says_so(capsys):
     assert "unstable at every Re from 1 to 3" in out
 
 
-@pytest.mark.parametrize("words", [("--help",), ("--version",), ("dance",), (), ("flows",), ("flows", "dune"),
-                                   ("flows", "fun"), ("dispersion", "--nonsense")], ids=str)
-def test_what_needs_no_numerics_imports_none(words):
-    code = ("import sys; from stability.cli import main\n"
-            f"try: main({list(words)!r})\nexcept SystemExit: pass\n"
-            "print('numpy' in sys.modules or 'scipy' in sys.modules, file=sys.stderr)")
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    loaded = done.stderr.splitlines()[-1]
-    assert loaded == str(words[:1] == ("dispersion",))
+NEEDED = {"spectrum": "--k 1", "dispersion": "--k 1", "neutral": "--vary Re --k 1", "critical": "--vary Re",
+          "map": "--over Re=1,2 -o x.csv", "sensitivity": "--k 1", "compare": "--k 1"}
+HEAVY = "numpy", "scipy", "matplotlib", "sympy"
+
+
+def slips(verb):
+    """Command lines of a verb that are refused, each with a slip of its own."""
+    film = [verb, "film", *NEEDED.get(verb, "").split()]
+    yield from ([verb], [verb, "fun"], [*film, "--nonsense"], [*film, "--slope-degree=30"], [*film, "more"],
+                [*film, "--Re"], [*film, "--Re", "-1"], [*film, "--Re", "x"], [*film, "--slope-deg", "180"],
+                [*film, "--Re", "1", "--Re", "2"], [*film, "--law", "linear"])
+    for option, *values in (("--k", "0", "x", "2:1:5"), ("--tolerance", "5"), ("--max-degree", "3"), ("--mode", "odd"),
+                            ("--over", "Fr=1", "Re=x", "Re=-1,2"), ("--each", "Re=", "slope_deg=1,200"),
+                            ("--method", "odd"), ("--delta", "1"), ("--vary", "Fr"), ("--range", "3"),
+                            ("--search", "2:1"), ("--workers", "0"), ("--quantity", "odd"), ("--points", "x"),
+                            ("--modes", "0"), ("--port", "x"), ("-o", "x.odd", "none/x.csv"), ("--plot", "x.odd"),
+                            ("--size", "1x1"), ("--plot x.png --size", "1"), ("--plot x.png --log", "z")):
+        at = film.index(option) if option in film else len(film)
+        yield from ([*film[:at], *option.split(), value, *film[at + 2:]] for value in values)
+
+
+@pytest.fixture(scope="module")
+def answers(tmp_path_factory):
+    """{words: (status, output, errors, heavy packages imported so far)} of one process that asks them all."""
+    asked = [["--help"], ["--version"], ["dance"], [], ["flows"], ["flows", "dune"], ["flows", "fun"]]
+    asked += [[verb, flow, "--help"] for verb in VERBS for flow in ("", *FLOWS) if flow or verb != "flows"]
+    asked += [words for verb in VERBS if verb != "flows" for words in slips(verb)]
+    asked = [[word for word in words if word] for words in asked]
+    code = f"""
+import io, json, sys
+from contextlib import redirect_stderr, redirect_stdout
+from stability.cli import main
+for words in json.load(sys.stdin):
+    out, err = io.StringIO(), io.StringIO()
+    with redirect_stdout(out), redirect_stderr(err):
+        try:
+            status = main(words)
+        except SystemExit as end:
+            status = end.code
+    heavy = [name for name in {HEAVY} if name in sys.modules]
+    print(json.dumps([status, out.getvalue(), err.getvalue(), heavy]))
+"""
+    done = subprocess.run([sys.executable, "-c", code], input=json.dumps(asked), capture_output=True, text=True,
+                          check=True, cwd=tmp_path_factory.mktemp("slips"))
+    return {tuple(words): json.loads(line) for words, line in zip(asked, done.stdout.splitlines(), strict=True)}
+
+
+def test_help_and_slips_import_no_numerics(answers):
+    """Of every verb and every flow of the package."""
+    first = next(((words, heavy) for words, (*_, heavy) in answers.items() if heavy), None)
+    assert first is None
+    assert len(answers) > 400
+
+
+def test_slips_are_refused_in_one_line(answers):
+    for words, (status, out, err, _) in answers.items():
+        if words[-1:] == ("--help",):
+            assert (status, err) == (0, "")
+            assert out.startswith("usage: stability ")
+        elif words not in {("--version",), ("flows",), ("flows", "dune")}:
+            assert (status, out, err.count("\n")) == (2, "", 1), words
+            assert err.startswith("stability: ")
+
+
+@pytest.mark.parametrize("name", FLOWS)
+def test_values_are_refused_as_the_class_refuses_them(name):
+    for item in declared(name).parameters:
+        for value in ("x", "nan", "inf", "-inf", "-1", "0", "1e30", "1e-30", "odd"):
+            said = []
+            for ask in (lambda: checked(Namespace(flow=name, **{f"parameter {item.name}": value})),  # noqa: B023
+                        lambda: check_parameter(name, fields_of(name)[item.name], value)):  # noqa: B023
+                try:
+                    ask()
+                    said.append(None)
+                except ParameterError as reason:
+                    said.append(str(reason))
+            assert said[0] == said[1] or "table" in item.metadata
+
+
+def fields_of(name):
+    return {item.name: item for item in fields(FLOWS[name])}
+
+
+def test_values_of_a_sweep_are_refused_at_the_first_that_is_not_admissible():
+    flow = declared("film")
+    for text, value in (("slope_deg=20,200,300", "200"), ("slope_deg=100:200:3:lin", "200"),
+                        ("slope_deg=100:300:5:lin", "200"), ("Re=-2:2:5:lin", "-2"), ("slope_deg=100:400:3", "200")):
+        with pytest.raises(ParameterError, match=re.escape(f"(got {value})")):
+            swept(text, flow)
+    assert swept("slope_deg=20:160:3", flow)[1].array.tolist() == np.geomspace(20, 160, 3).tolist()

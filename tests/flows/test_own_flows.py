@@ -119,7 +119,7 @@ def test_a_map_is_not_resumed_with_another_version(capsys, tmp_path, file):
     from stability.cli.verbs.map import _request
     from stability.studies.map import carry_out
 
-    carry_out(_request(request), journal=f"{out}.partial")
+    carry_out(_request(request)(), journal=f"{out}.partial")
     file(("cosh(z) ** 2", "cosh(z) ** 4"))
     status, _, err = run(capsys, *command)
     assert (status, err.count("\n")) == (2, 1)

@@ -102,9 +102,9 @@ def test_foresight_that_misses_is_no_harm():
     solver = Solver(flows.Dune())
     other = surface_branch(Solver(flows.Film()))
     other.reach(1.0)
-    assert foresight.Foresight(solver.rough(1e-4), other.known).at(1.0, 1.0) is None
+    assert foresight.Foresight(solver.rough(1e-4), other.known).at(1.0, 1.0, np.inf) is None
     nothing = SimpleNamespace(k=1.0, degree=12, x=np.zeros(solver.pencil(12).size), y=np.zeros(solver.pencil(12).size))
-    assert rough_solver(solver, {1.0: nothing}).foresight.at(1.0, 1.0) is None
+    assert rough_solver(solver, {1.0: nothing}).foresight.at(1.0, 1.0, np.inf) is None
 
 
 def test_a_loop_over_fastest_waves_gives_what_each_flow_gives_alone(remembered):  # noqa: F811

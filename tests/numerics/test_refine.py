@@ -55,7 +55,7 @@ def test_how_many_eigenvalues_are_finite_does_not_depend_on_sizes(extreme):
         assembly = Solver(flow).assembly
         assembly.generic = getattr(assembly, pencil)
         dense.smallest_count.cache_clear()
-        return dense.smallest_count(dense.Pattern(assembly.system.pattern, assembly))
+        return dense.smallest_count(dense.Pattern(assembly.system.pattern, 10, assembly))
 
     usual = count(type(extreme)(), "generic")
     assert count(type(extreme)(), "pencil") == count(extreme, "generic") == usual

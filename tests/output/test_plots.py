@@ -13,10 +13,11 @@ from scipy.io import netcdf_file
 
 from stability import ParameterError, dispersion, flows, load
 from stability.cli import main
-from stability.output.look import Look, parse_size, read_style
+from stability.output.look import Look
 from stability.output.overlay import read_overlay
 from stability.output.panels import Axis, Curve, Panel, scale_found, scale_of
 from stability.output.plots import draw, plot
+from stability.output.sheet import parse_size, read_style
 from stability.output.style import COLOURS, STYLE
 from stability.output.symbols import assigned, symbol, symbol_of, title_of, value_text
 

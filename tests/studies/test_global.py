@@ -313,7 +313,7 @@ def test_without_the_overlap_a_walk_would_jump(monkeypatch):
 def test_without_the_overlap_a_move_in_a_parameter_would_jump(monkeypatch):
     """Two modes of plane Poiseuille flow, from Re 1e4 to 20 at once, arrive as one unless each keeps to itself."""
     plane = Plane(flows.Poiseuille(), "Re", Accuracy())
-    first, second = (plane.point(1.0, 1e4, plane.solver(1e4).solve(1.0, rate))
+    first, second = (plane.point(1.0, 1e4, plane.solver(1e4).solve(1.0, rate, None, 96))
                      for rate in (-0.03518658 - 0.96464251j, -0.06325157 - 0.93635178j))
     assert abs(plane.move(first, 1.0, 20.0).mode.sigma - plane.move(second, 1.0, 20.0).mode.sigma) > 1
     monkeypatch.setattr("stability.studies.plane._OVERLAP", 1e9)

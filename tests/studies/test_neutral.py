@@ -74,6 +74,8 @@ def test_both_branches_meet_at_the_nose():
         assert abs(mode.growth_rate / slope) <= point.error + mode.error / abs(slope)
     assert curve.points[6].value == pytest.approx(5772.221816209698, rel=1e-9)
     assert np.nanmin(curve.trace[:, 1]) == pytest.approx(5772.22, rel=1e-3)
+    assert np.isnan(curve.trace[:, 0]).sum() == 1  # one curve through all eight
+    assert len(curve.trace) < 80
 
 
 def test_the_curve_turns_back_beyond_the_range_asked_for():
@@ -94,6 +96,21 @@ def test_curve_from_a_long_wave_threshold():
     shift = [point.value - 1.25 * point.flow.cot_slope for point in curve.points]
     assert shift[1] / shift[0] == pytest.approx(4, rel=1e-3)
     assert shift[2] > 0
+
+
+def test_long_wave_thresholds_need_no_waves_of_finite_length(monkeypatch):
+    monkeypatch.setattr("stability.studies.ridges.Landscape.column", None)
+    point = critical(flows.Film(slope_deg=30.0), "Re", long_wave=True)
+    assert point.value == pytest.approx(1.25 * point.flow.cot_slope, rel=1e-12)
+    with pytest.raises(NotResolved, match="no long-wave threshold in slope_deg from 21.062 to 32.5514"):
+        critical(flows.RollWave(Fr2=5.0), "slope_deg", long_wave=True)
+
+
+def test_a_neutral_curve_is_drawn_on_the_scale_of_the_wavenumbers_asked_for():
+    curve = neutral_curve(flows.Film(), "Re", np.geomspace(0.01, 1.0, 3), span=(2.0, 100.0))
+    evenly = zip(curve.points, (0.01, 0.5, 0.99), strict=True)
+    even = replace(curve, points=tuple(replace(point, k=k) for point, k in evenly))
+    assert [panel.x.scale for result in (curve, even) for panel in result.panels()] == ["log"] * 2 + ["linear"] * 2
 
 
 def test_a_sweep_finds_what_each_flow_has():

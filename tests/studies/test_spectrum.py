@@ -60,7 +60,7 @@ def test_bad_wavenumbers_are_refused():
 
 
 def test_the_halves_of_a_symmetric_flow_have_its_modes():
-    """Even and odd modes on half the domain are the modes of plane Poiseuille flow on the whole."""
+    """Even and odd modes together are the modes of plane Poiseuille flow."""
     flow = flows.Poiseuille(Re=2000.0)
     whole = spectrum(flow, 1.0, 8)
     parts = [mode for half in flow.halves() for mode in spectrum(half, 1.0, 8).modes]

@@ -1,9 +1,15 @@
 """stability base: the base flow, its profiles through all layers."""
 
 import argparse
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ..common import add_verb, flow_of, report
+from ...checks import check_integer
+from ...studies.choices import HEIGHTS, MOST_HEIGHTS
+from ..asked import checked, flow_of
+from ..common import add_verb, report
+
+if TYPE_CHECKING:
+    from ...studies.base import BaseFlow
 
 
 def add(verbs: Any) -> None:
@@ -16,9 +22,12 @@ def _points_option(verb: Any) -> None:
 
 
 def _run(arguments: argparse.Namespace) -> int:
-    from ...checks import check_integer
-    from ...studies.base import HEIGHTS, MOST_HEIGHTS, base_flow
-
-    flow = flow_of(arguments)
+    checked(arguments)
     points = HEIGHTS if arguments.points is None else check_integer(arguments.points, "--points", 2, MOST_HEIGHTS)
-    return report(arguments, lambda: base_flow(flow, points))
+
+    def compute() -> "BaseFlow":
+        from ...studies.base import base_flow
+
+        return base_flow(flow_of(arguments), points)
+
+    return report(arguments, compute)

@@ -3,7 +3,8 @@
 import argparse
 from typing import Any
 
-from ..common import add_verb, flow_of, report
+from ..asked import checked, flow_of
+from ..common import add_verb, report
 from ..progress import Bar
 from ..specs import parse_one
 
@@ -21,12 +22,13 @@ def _k_option(verb: Any) -> None:
 
 
 def _run(arguments: argparse.Namespace) -> int:
-    flow = flow_of(arguments)
+    checked(arguments)
     k = parse_one(arguments.k, "--k", "wavenumber")
 
     def compute() -> Any:
         from ...studies.compare import comparisons
 
+        flow = flow_of(arguments)
         bar, found = Bar(arguments.quiet), None
         try:
             for found in comparisons(flow, k, report=bar, points=_POINTS, budget=_BUDGET):  # noqa: B007

@@ -3,7 +3,9 @@
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from ..common import accuracy_options, add_verb, flow_of, options_of, report
+from ...checks import check_range
+from ..asked import check_vary, checked, flow_of
+from ..common import accuracy_options, add_verb, options_of, report
 
 if TYPE_CHECKING:
     from ...studies.critical import NeutralPoint
@@ -31,8 +33,6 @@ def search_option(verb: Any) -> None:
 
 def searched(arguments: argparse.Namespace) -> dict[Any, Any]:
     """The options --range and --search as arguments of `critical`."""
-    from ...checks import check_range
-
     names = {"span": "range", "search": "search"}
     given = {name: getattr(arguments, option, None) for name, option in names.items()}
     return {name: check_range(value.split(":"), f"--{names[name]}") for name, value in given.items() if value}
@@ -44,13 +44,12 @@ def long_wave_option(verb: Any) -> None:
 
 
 def _run(arguments: argparse.Namespace) -> int:
-    from ...flows.base import check_parameter_name
-    from ...studies.critical import critical
-
-    flow, options = flow_of(arguments), options_of(arguments)
-    vary = check_parameter_name(flow, arguments.vary.replace("-", "_"))
+    flow, options = checked(arguments), options_of(arguments)
+    vary, where = check_vary(flow, arguments), searched(arguments)
 
     def compute() -> "NeutralPoint":
-        return critical(flow, vary, long_wave=arguments.long_wave, strict=False, **searched(arguments), **options)
+        from ...studies.critical import critical
+
+        return critical(flow_of(arguments), vary, long_wave=arguments.long_wave, strict=False, **where, **options)
 
     return report(arguments, compute)

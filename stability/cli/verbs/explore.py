@@ -3,9 +3,11 @@
 import argparse
 from typing import Any
 
+from ...checks import check_integer
 from ...errors import ParameterError
-from ..common import SPEC, add_bare_verb, flow_of
-from ..specs import parse_spec
+from ..asked import checked, flow_of
+from ..common import SPEC, add_bare_verb
+from ..specs import read_spec
 from ..streams import say
 
 _WAVENUMBERS = "0.01:10:80"
@@ -25,18 +27,18 @@ def _options(verb: Any) -> None:
 
 
 def _run(arguments: argparse.Namespace) -> Any:
-    from ...checks import check_integer
-
-    flow, k = flow_of(arguments), parse_spec(arguments.k, "--k")
+    checked(arguments)
+    k = read_spec(arguments.k, "--k")
     if arguments.port is not None and not arguments.web:
         raise ParameterError("--port: belongs to --web; leave it out")
     port = _PORT if arguments.port is None else check_integer(arguments.port, "--port", 1, 65535)
+    flow = flow_of(arguments)
     _open(arguments.web, port)
     from matplotlib import pyplot
 
     from ...studies.explore import explore
 
-    window = explore(flow, k, source=arguments.flow)
+    window = explore(flow, k.array, source=arguments.flow)
     if arguments.web and not arguments.quiet:
         say("stability: Ctrl-C ends the page")
     pyplot.show(block=True)

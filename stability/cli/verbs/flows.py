@@ -4,7 +4,7 @@ import argparse
 from typing import Any
 
 from ...flows import FLOWS
-from ...flows.declaration import Declaration, declared
+from ...flows.declaration import Declaration, Parameter, declared
 from ..names import FLOW, flag_of
 from ..streams import put, terminal_width
 
@@ -26,12 +26,16 @@ def _run(arguments: argparse.Namespace) -> int:
 
 
 def _describe(flow: Declaration, width: int | None) -> str:
-    rows = [(flag_of(item.name), *item[1:]) for item in flow.parameters]
+    rows = [(flag_of(item.name), item.default, item.allowed, _meaning(item)) for item in flow.parameters]
     widths = [max(len(row[i]) for row in rows) for i in range(3)]
     lines = ["  " + "  ".join((*(cell.ljust(w) for cell, w in zip(row, widths, strict=False)), row[3])) for row in rows]
     if width and max(map(len, lines)) > width:
         lines = _wrapped(rows, width)
     return "\n".join([f"{flow.name}: {flow.title}", *(f"  {part}" for part in flow.scales.split("; ")), *lines, ""])
+
+
+def _meaning(item: Parameter) -> str:
+    return f"{item.meaning}; searched from {item.searched}" if item.searched else item.meaning
 
 
 def _wrapped(rows: Any, width: Any) -> Any:

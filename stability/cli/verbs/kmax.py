@@ -6,14 +6,18 @@ from typing import TYPE_CHECKING, Any
 
 from ...errors import ParameterError, StabilityError
 from ...status import INTERRUPTED, unresolved
-from ...studies.kmax import CREST_MODES, Optima, Optimum, k_max_sweep
-from ..common import SPEC, accuracy_options, add_verb, collect, options_of, sweep_of
+from ...studies.choices import CREST_MODES
+from ..asked import sweep_of, swept
+from ..common import SPEC, accuracy_options, add_verb, collect, options_of
 from ..families import answer, each_option
-from ..methods import bvp_settings, method_of, method_options
+from ..methods import bvp_settings, check_method, method_of, method_options
+from ..specs import Spec
 from .critical import search_option, searched
 
 if TYPE_CHECKING:
     from ...flows.base import Flow
+    from ...flows.declaration import Declaration
+    from ...studies.kmax import Optimum
 
 
 def add(verbs: Any) -> None:
@@ -34,11 +38,21 @@ def _run(arguments: argparse.Namespace) -> int:
     if arguments.mode and arguments.mode not in CREST_MODES:
         raise ParameterError(f"--mode: must be one of {', '.join(CREST_MODES)} (got {arguments.mode!r})")
     options = options_of(arguments)
-    return answer(arguments, lambda flow: _question(arguments, flow, options))
+
+    def ask(declared: "Declaration") -> Callable[..., Any]:
+        over = None if arguments.over is None else swept(arguments.over, declared)
+        check_method(arguments)
+        where = searched(arguments)
+        return lambda flow: _question(arguments, flow, over, {**where, **options})
+
+    return answer(arguments, ask)
 
 
-def _question(arguments: argparse.Namespace, flow: "Flow", options: dict[str, Any]) -> Callable[..., Any]:
-    name, sweep = sweep_of(arguments, flow)
+def _question(arguments: argparse.Namespace, flow: "Flow", over: tuple[str, Spec] | None,
+              options: dict[str, Any]) -> Callable[..., Any]:
+    from ...studies.kmax import Optima, Optimum, k_max_sweep
+
+    name, sweep = (None, [flow]) if over is None else (over[0], sweep_of(flow, over))
     bvps = [method_of(arguments, one, options["tolerance"]) for one in sweep]
     if bvps[0] is not None and not flow.has_surface_mode():
         raise ParameterError(f"--method {arguments.method}: {flow.name} has no slow surface mode, the one that is "
@@ -49,7 +63,7 @@ def _question(arguments: argparse.Namespace, flow: "Flow", options: dict[str, An
 
     def compute() -> Any:
         optima = map(_bounded, sweep, bvps) if bvps[0] is not None else \
-            k_max_sweep(sweep, mode=arguments.mode, **searched(arguments), **options)
+            k_max_sweep(sweep, mode=arguments.mode, **options)
         found = collect(arguments, optima, len(sweep),
                         lambda done: [Optimum(one, (), INTERRUPTED) for one in sweep[done:]])
         return Optima(flow, name, tuple(found), arguments.method)
@@ -57,9 +71,10 @@ def _question(arguments: argparse.Namespace, flow: "Flow", options: dict[str, An
     return compute
 
 
-def _bounded(flow: "Flow", bvp: Any) -> Optimum:
+def _bounded(flow: "Flow", bvp: Any) -> "Optimum":
     """The optimum of a flow by bounded minimisation over solve_bvp's growth rates; the first maximum only."""
     from ...bvp.continuation import bounded_maximum
+    from ...studies.kmax import Optimum
 
     settings = bvp_settings(bvp)
     try:

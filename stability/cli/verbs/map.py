@@ -1,11 +1,14 @@
 """stability map: a quantity over a grid of one to three parameters, on all cores, resumed where it was stopped."""
 
 import argparse
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...checks import check_integer
 from ...errors import ParameterError
+from ...studies.choices import MOST_WORKERS, check_quantity, usual_quantity
+from ..asked import check_vary, checked, flow_of, swept
 from ..common import (
     FORMS,
     INTERRUPTED_STATUS,
@@ -14,13 +17,11 @@ from ..common import (
     accuracy_options,
     add_verb,
     check_files,
-    flow_of,
     form_of,
     report,
-    swept_values,
 )
 from ..progress import Bar
-from ..specs import parse_spec
+from ..specs import Spec, read_spec
 from ..streams import say
 from .critical import vary_option
 
@@ -47,16 +48,17 @@ def _options(verb: Any) -> None:
 
 
 def _run(arguments: Any) -> Any:
+    request_of = _request(arguments)
+    workers = None if arguments.workers is None else check_integer(arguments.workers, "--workers", 1, MOST_WORKERS)
+    _check_output(arguments)
     from ...studies.map import carry_out
-    from ...studies.pool import MOST_WORKERS, cores
+    from ...studies.pool import cores
 
-    request = _request(arguments)
-    workers = cores() if arguments.workers is None else check_integer(arguments.workers, "--workers", 1, MOST_WORKERS)
-    _check_output(arguments, request)
+    request = request_of()
     journal = Path(f"{arguments.output}.partial")
     bar = Bar(arguments.quiet)
     try:
-        found = carry_out(request, workers=workers, journal=journal, report=bar)
+        found = carry_out(request, workers=workers or cores(), journal=journal, report=bar)
         bar.clear()
         if found.damaged and not arguments.quiet:
             say(f"stability: damaged lines of {str(journal)!r} left out: {found.damaged}; the points that no other "
@@ -73,29 +75,37 @@ def _run(arguments: Any) -> Any:
     return status
 
 
-def _request(arguments: argparse.Namespace) -> "Request":
-    from ...studies.request import Request, usual_quantity
-
-    flow, accuracy = flow_of(arguments), accuracy_of(arguments)
+def _request(arguments: argparse.Namespace) -> "Callable[[], Request]":
+    """Check what is asked; return the function that makes the request of it."""
+    flow, accuracy = checked(arguments), accuracy_of(arguments)
     if not arguments.over:
         raise ParameterError("--over: give at least one parameter to sweep, NAME=SPEC")
-    over = {}
+    over: dict[str, Spec] = {}
     for text in arguments.over:
-        name, values = swept_values(text, flow)
+        name, values = swept(text, flow)
         if name in over:
             raise ParameterError(f"--over: {name} is swept twice")
         over[name] = values
-    k = None if arguments.k is None else parse_spec(arguments.k, "--k")
-    vary = arguments.vary and arguments.vary.replace("-", "_")
-    return Request(flow, over, arguments.quantity or usual_quantity(k, vary), k, vary, accuracy)
+    k = None if arguments.k is None else read_spec(arguments.k, "--k")
+    vary = None if arguments.vary is None else check_vary(flow, arguments)
+    quantity = check_quantity(arguments.quantity or usual_quantity(k, vary), over, k, vary)
+
+    def request() -> "Request":
+        from ...studies.request import Request
+
+        grid = {name: values.array.tolist() for name, values in over.items()}
+        return Request(flow_of(arguments), grid, quantity, None if k is None else k.array, vary, accuracy)
+
+    return request
 
 
-def _check_output(arguments: argparse.Namespace, request: "Request") -> None:
+def _check_output(arguments: argparse.Namespace) -> None:
     if arguments.output is None:
         raise ParameterError("-o FILE is needed, .csv, .json or .nc: a map is kept beside it while it is computed")
     if form_of(arguments) == "table":
         raise ParameterError(f"-o: the file must end in {', '.join(FORMS)}, or add --csv or --json "
                              f"(got {arguments.output!r})")
     check_files(arguments)
-    if arguments.plot and len(request.axes) > _DRAWN_AXES:
-        raise ParameterError(f"--plot: draws maps over one or two axes (this one has {', '.join(request.axes)})")
+    axes = [text.partition("=")[0].replace("-", "_") for text in arguments.over] + ["k"] * (arguments.k is not None)
+    if arguments.plot and len(axes) > _DRAWN_AXES:
+        raise ParameterError(f"--plot: draws maps over one or two axes (this one has {', '.join(axes)})")

@@ -6,13 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 from ...errors import ParameterError
 from ...status import INTERRUPTED
-from ..common import SPEC, accuracy_options, add_verb, collect, options_of, sweep_of
+from ..asked import check_vary, sweep_of, swept
+from ..common import SPEC, accuracy_options, add_verb, collect, options_of
 from ..families import answer, each_option
-from ..specs import parse_spec
+from ..specs import Spec, read_spec
 from .critical import long_wave_option, range_option, searched, vary_option
 
 if TYPE_CHECKING:
     from ...flows.base import Flow
+    from ...flows.declaration import Declaration
     from ...studies.critical import NeutralSweep
     from ...studies.neutral import NeutralCurve
 
@@ -35,34 +37,44 @@ def _run(arguments: argparse.Namespace) -> int:
     if arguments.k is not None and arguments.long_wave:
         raise ParameterError("--long-wave: has no meaning with --k; use --over, or the verb critical")
     options = options_of(arguments)
-    return answer(arguments, lambda flow: (_over if arguments.k is None else _curve)(arguments, flow, options))
+
+    def ask(flow: "Declaration") -> Callable[..., Any]:
+        vary = check_vary(flow, arguments)
+        if arguments.k is None:
+            over = swept(arguments.over, flow)
+            if over[0] == vary:
+                raise ParameterError(f"--over: {vary} is the parameter to solve for; sweep another one")
+            where = searched(arguments)
+            return lambda flow: _over(arguments, flow, vary, over, {**where, **options})
+        spec, where = read_spec(arguments.k, "--k"), searched(arguments)
+        return lambda flow: _curve(arguments, flow, vary, spec, {**where, **options})
+
+    return answer(arguments, ask)
 
 
-def _over(arguments: argparse.Namespace, flow: "Flow", options: dict[str, Any]) -> Callable[..., Any]:
+def _over(arguments: argparse.Namespace, flow: "Flow", vary: str, over: tuple[str, Spec],
+          options: dict[str, Any]) -> Callable[..., Any]:
     from ...studies.critical import NeutralPoint, NeutralSweep, critical_sweep
 
-    vary = _vary(arguments, flow)
-    name, sweep = sweep_of(arguments, flow)
-    if name == vary:
-        raise ParameterError(f"--over: {name} is the parameter to solve for; sweep another one")
+    sweep = sweep_of(flow, over)
 
     def compute() -> "NeutralSweep":
-        found = collect(arguments, critical_sweep(sweep, vary, long_wave=arguments.long_wave, **searched(arguments),
-                                                  **options), len(sweep),
+        found = collect(arguments, critical_sweep(sweep, vary, long_wave=arguments.long_wave, **options), len(sweep),
                         lambda done: [NeutralPoint(one, vary, None, None, None, None, None, INTERRUPTED)
                                       for one in sweep[done:]])
-        return NeutralSweep(flow, vary, name, tuple(found))
+        return NeutralSweep(flow, vary, over[0], tuple(found))
 
     return compute
 
 
-def _curve(arguments: argparse.Namespace, flow: "Flow", options: dict[str, Any]) -> Callable[..., Any]:
+def _curve(arguments: argparse.Namespace, flow: "Flow", vary: str, spec: Spec,
+           options: dict[str, Any]) -> Callable[..., Any]:
     import numpy as np
 
     from ...studies.critical import NeutralPoint
     from ...studies.neutral import NeutralCurve, joined_curve, neutral_parts
 
-    vary, wavenumbers = _vary(arguments, flow), parse_spec(arguments.k, "--k")
+    wavenumbers = spec.array
 
     def compute() -> "NeutralCurve":
         def rest(done: Any) -> Any:
@@ -70,13 +82,7 @@ def _curve(arguments: argparse.Namespace, flow: "Flow", options: dict[str, Any])
                       for k in wavenumbers[done:].tolist())
             return [NeutralCurve(flow, vary, tuple(points), np.empty((0, 2)))]
 
-        parts = neutral_parts(flow, vary, wavenumbers, **searched(arguments), **options)
+        parts = neutral_parts(flow, vary, wavenumbers, **options)
         return joined_curve(collect(arguments, parts, len(wavenumbers), rest))
 
     return compute
-
-
-def _vary(arguments: argparse.Namespace, flow: "Flow") -> str:
-    from ...flows.base import check_parameter_name
-
-    return check_parameter_name(flow, arguments.vary.replace("-", "_"))

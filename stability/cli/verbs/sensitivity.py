@@ -5,8 +5,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ...errors import ModeLost, ParameterError
-from ...studies.dispersion import MODES, default_mode, dispersion
-from ..common import accuracy_options, add_verb, flow_of, options_of, report
+from ...studies.choices import MODES
+from ..asked import checked, flow_of
+from ..common import accuracy_options, add_verb, options_of, report
 from ..specs import parse_one
 
 if TYPE_CHECKING:
@@ -30,15 +31,18 @@ def _mode_option(verb: Any) -> None:
 
 
 def _run(arguments: argparse.Namespace) -> int:
-    flow, options = flow_of(arguments), options_of(arguments)
+    checked(arguments)
+    options = options_of(arguments)
     k = parse_one(arguments.k, "--k", "wavenumber")
-    mode = arguments.mode or default_mode(flow)
-    if mode not in _MODES:
-        raise ParameterError(f"--mode: must be one of {', '.join(_MODES)} (got {mode!r})")
+    if arguments.mode and arguments.mode not in _MODES:
+        raise ParameterError(f"--mode: must be one of {', '.join(_MODES)} (got {arguments.mode!r})")
 
     def compute() -> "Sensitivities":
+        from ...studies.dispersion import default_mode, dispersion
         from ...studies.sensitivity import sensitivities
 
+        flow = flow_of(arguments)
+        mode = arguments.mode or default_mode(flow)
         relation = dispersion(flow, k, mode, strict=False, **options)
         for reason in relation.lost.values():
             raise ModeLost(reason)

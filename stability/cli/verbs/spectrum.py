@@ -5,9 +5,10 @@ from dataclasses import replace
 from typing import Any
 
 from ...checks import check_integer
-from ...studies.spectrum import MOST_MODES, Spectra, ill_posed_remarks, spectra
-from ..common import accuracy_of, accuracy_options, add_verb, collect, flow_of, k_option, report
-from ..specs import parse_spec
+from ...studies.choices import MOST_MODES
+from ..asked import checked, flow_of
+from ..common import accuracy_of, accuracy_options, add_verb, collect, k_option, report
+from ..specs import read_spec
 
 
 def add(verbs: Any) -> None:
@@ -21,11 +22,15 @@ def _modes_option(verb: Any) -> None:
 
 
 def _run(arguments: argparse.Namespace) -> int:
-    flow, accuracy = flow_of(arguments), accuracy_of(arguments)
+    checked(arguments)
+    accuracy = accuracy_of(arguments)
     count = check_integer(arguments.modes, "--modes", 1, MOST_MODES)
-    wavenumbers = parse_spec(arguments.k, "--k")
+    spec = read_spec(arguments.k, "--k")
 
     def compute() -> Any:
+        from ...studies.spectrum import Spectra, ill_posed_remarks, spectra
+
+        flow, wavenumbers = flow_of(arguments), spec.array
         parts = spectra(flow, wavenumbers.tolist(), count, accuracy)
         found = collect(arguments, parts, len(wavenumbers), lambda done: [])
         missing, remarks = wavenumbers.tolist()[len(found):], ill_posed_remarks(found)

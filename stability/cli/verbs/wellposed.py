@@ -4,9 +4,9 @@ import argparse
 from typing import Any
 
 from ...checks import check_integer
-from ...studies.wellposed import growth_with_degree, ill_posedness
-from ..common import add_verb, collect, flow_of, report
-from ..specs import parse_spec
+from ..asked import checked, flow_of
+from ..common import add_verb, collect, report
+from ..specs import parse_spec, read_spec
 
 _POINTS = "21"
 _WAVENUMBERS = "1:100:9"  # of the second panel of the figure
@@ -28,12 +28,14 @@ def _points_option(verb: Any) -> None:
 
 
 def _run(arguments: argparse.Namespace) -> int:
-    flow = flow_of(arguments)
+    checked(arguments)
     count = check_integer(arguments.points, "--points", 2, 100_000)
-    wavenumbers = parse_spec(arguments.k, "--k") if arguments.k else None
+    spec = read_spec(arguments.k, "--k") if arguments.k else None
 
     def compute() -> Any:
-        growth = ()
+        from ...studies.wellposed import ill_posedness
+
+        flow, growth, wavenumbers = flow_of(arguments), (), None if spec is None else spec.array
         if wavenumbers is not None or arguments.plot:
             growth = _growth(arguments, flow, parse_spec(_WAVENUMBERS, "") if wavenumbers is None else wavenumbers)
         return ill_posedness(flow, count, growth, wavenumbers)
@@ -42,5 +44,7 @@ def _run(arguments: argparse.Namespace) -> int:
 
 
 def _growth(arguments: Any, flow: Any, wavenumbers: Any) -> Any:
+    from ...studies.wellposed import growth_with_degree
+
     growth = (one for k in sorted(set(wavenumbers.tolist())) for one in growth_with_degree(flow, k))
     return tuple(collect(arguments, growth, len(wavenumbers), lambda done: []))
