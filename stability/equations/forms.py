@@ -25,8 +25,10 @@ class Form:
         return Form(total)
 
     def __mul__(self, other: Any) -> "Form":
-        total = {}
-        for right, b in _form(other).terms.items():
+        if not isinstance(other, Form):
+            return Form({names: value * other for names, value in self.terms.items()})
+        total: dict[tuple[Any, ...], Any] = {}
+        for right, b in other.terms.items():
             for left, a in self.terms.items():
                 names = tuple(sorted(left + right)) if left and right else left or right
                 total[names] = total[names] + a * b if names in total else a * b

@@ -21,16 +21,20 @@ import numpy as np
 
 from ..numerics import chebyshev
 from ..numerics.arithmetic import Arithmetic
-from ..numerics.bordered import Bordered, Factors, ManyFactors, Places
+from ..numerics.blocks import Blocks, placed
+from ..numerics.bordered import Bordered, Factors, ManyFactors
 from ..numerics.kernel.compiled import Compiled, Packed
 from ..numerics.kernel.library import library
 from ..numerics.stack import Lines, Stack
+from .condensed import Arrangement, Condensed, condensable
 from .layer import FIELDS
 
 if TYPE_CHECKING:
     from .system import Structure, System
     from .table import Table
 
+_CONDENSED = 16, 96  # degrees for which it pays to condense full blocks
+_ENDS = 4  # terms of a series, twice so many before them: they tell how fast it falls
 _LAST = 4  # rows of an equation whose left vector bounds that of the tail: the last two alone feel the truncation
 
 
@@ -60,15 +64,15 @@ class Layout:
 
     Attributes: `size` rows and columns, of which `interior` are banded; `columns` and `rows` map unknowns and equations
     to index arrays of their coefficients, `orders` to the numbers of those; `last` (equations, 4) are the last rows of
-    each equation; `tails` rows lie beyond. `stack`, `tail`, `b` and `places` tell
-    where the entries of A - rate B, of the rows beyond, of B and of the bordered band matrix lie; `inside`, `beyond`
-    and `carrying`, which entries of the table those are; `carriers` (parts,), which parts are of B, and `sides` the
-    first of A and the first of B.
+    each equation, `ends` (3, fields, 4) the last columns of each field behind those before them; `tails` rows lie
+    beyond. `stack`, `tail`, `b` and `places` tell where the entries of A - rate B, of the rows beyond, of B and of the
+    bordered matrix lie; `inside`, `beyond` and `carrying`, which entries of the table those are; `carriers` (parts,),
+    which parts are of B, and `sides` the first of A and the first of B.
     """
 
     def __init__(self, table: "Table", degree: int) -> None:
         self.table, self.structure, self.degree, self._common = table, table.structure, degree, {}
-        columns, rows = self._place(table)
+        columns, rows = self._maps = self._place(table)
         within = (table.column <= degree) & (table.row < rows.shape[1])
         places = rows[table.equation, np.where(within, table.row, 0)]
         kept = np.flatnonzero(within & (places >= 0) & (columns[table.unknown, np.where(within, table.column, 0)] >= 0))
@@ -76,15 +80,26 @@ class Layout:
                              columns[table.unknown[kept], table.column[kept]])
         here, count = row < self.size, len(self.structure.parts)
         carries = here & (part >= self.structure.first_b)
-        self.inside, self.beyond, self.carrying = kept[here], kept[~here], kept[carries]
+        self.inside, self.beyond, self.carrying = (kept[some].astype(np.int32) for some in (here, ~here, carries))
         self.stack = Lines(part[here], row[here], column[here], count, (self.size, self.size))
-        self.places = Places(part[here], row[here], column[here], count, self.interior, self.size - self.interior)
+        self.places = placed(part[here], row[here], column[here], count, self.interior, self.size - self.interior)
         self.tail = Lines(part[~here], row[~here] - self.size, column[~here], count,
                           (self.tails, self.size))
         self.b = Lines(part[carries], row[carries], column[carries], count, (self.size, self.size))
         self.rate_rows = np.unique(row[carries])
         self.carriers, self.sides = np.arange(count) >= self.structure.first_b, np.array((0, self.structure.first_b))
-        self.entries = part[here], row[here], column[here]
+
+    def entries(self) -> tuple[np.ndarray, ...]:
+        """Part, row and column of the entries `inside`."""
+        table, (columns, rows) = self.table, self._maps
+        return (table.part[self.inside], rows[table.equation[self.inside], table.row[self.inside]],
+                columns[table.unknown[self.inside], table.column[self.inside]])
+
+    @cached_property
+    def arrangement(self) -> Arrangement | None:
+        """How its pencils are condensed; None where that does not pay."""
+        worthwhile = isinstance(self.places, Blocks) and _CONDENSED[0] <= self.degree <= _CONDENSED[1]
+        return Arrangement(self) if worthwhile and condensable(self) else None
 
     def common(self, other: "Layout") -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
         """Which columns, and which rows, it has in common with another degree: for each, where here and where there."""
@@ -121,6 +136,9 @@ class Layout:
         self.orders = {name: np.flatnonzero(mask) for name, mask in zip(structure.unknowns, used, strict=True)}
         self.columns = {name: places[self.orders[name]] for name, places in
                         zip(structure.unknowns, columns, strict=True)}
+        ends = [self.columns[name] for name in structure.unknowns[:structure.fields]]
+        few = min(_ENDS, *(len(places) // 3 for places in ends))
+        self.ends = np.array([places[-3 * few:].reshape(3, few) for places in ends]).swapaxes(0, 1)
         self._name_rows(equations, rows)
         return columns, rows
 
@@ -236,14 +254,16 @@ class Pencil:
         return kind(self._bordered, weights * self.powers(rate))
 
     @cached_property
+    def condensed(self) -> Condensed | None:
+        """The same eigenproblem with half the unknowns, where that pays."""
+        arrangement = self.layout.arrangement
+        return Condensed(arrangement, self._values[self.layout.inside]) if arrangement else None
+
+    @cached_property
     def _bordered(self) -> Bordered:
         return Bordered(self.layout.places, self._values[self.layout.inside])
 
     def pair(self, weights: Any) -> Any:
         """Return A and B in full, each (size, size)."""
-        part, row, column = self.layout.entries
-        value = self._values[self.layout.inside] * weights.value[part]
-        full = np.zeros((2, self.size, self.size), value.dtype)
-        carries = part >= self.first_b
-        np.add.at(full, (carries.astype(int), row, column), np.where(carries, -value, value))
-        return full[0], full[1]
+        carries = self.layout.carriers
+        return self.stack.full(weights.value * ~carries), -self.stack.full(weights.value * carries)

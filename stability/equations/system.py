@@ -4,9 +4,10 @@ Independent of any resolution. Terms are kept as (unknown, monomial, series): th
 multiplies the unknown (or its s-derivative, marked ') and a product of scalar symbols such as k^2 rate.
 """
 
+from cmath import isfinite
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
     from .layer import Layer, Profile
 
 _PROPORTIONAL = 1e-12  # relative difference of ratios that is rounding: two conditions that say the same
+_FEW = 8  # terms of a series up to which each of them counts
+_MANY = 3  # layers from which on longer series have lengths that others share: their blocks are full anyway
+_LENGTHS, _STEP = (16, 32), 4  # those lengths, and how far apart they are beyond
 _SYMMETRIC = 1e-13  # largest coefficient of the wrong parity, relative, in a layer that is its own mirror image
 _EQUATIONS = ("shear rate", "continuity", "momentum along", "momentum across")
 
@@ -40,7 +44,7 @@ class Equation:
 
 @dataclass(frozen=True)
 class EquationRow:
-    """An equation or a condition, whatever its coefficients: terms (unknown, monomial, indices of what is not 0)."""
+    """An equation or a condition, whatever its coefficients: terms (unknown, monomial, indices that may not be 0)."""
 
     name: str
     extra: int
@@ -73,6 +77,13 @@ class Structure:
     def first(self) -> tuple[int, ...]:
         """The first coefficient that counts of each field; of its equation it is the other one, 0 or 1."""
         return tuple(int(self.reflection * ODD_WITH_W[field % len(FIELDS)] < 0) for field in range(self.fields))
+
+    def __hash__(self) -> int:
+        return self._hash
+
+    @cached_property
+    def _hash(self) -> int:
+        return hash((self.unknowns, self.rows, self.reflection))
 
     @cached_property
     def parts(self) -> tuple[Any, ...]:
@@ -122,16 +133,17 @@ class System:
     def structure(self) -> "Structure":
         """The `Structure` of the equations."""
         rows = *((one.name, one.extra, one.terms) for one in self.equations), *(("", 0, one) for one in self.conditions)
-        return Structure((*self.fields, *self.surfaces), len(self.fields), len(self.equations), self.longest, tuple(
-            EquationRow(name, extra, tuple((unknown, monomial, _support(series))
-                                           for unknown, monomial, series in terms))
-            for name, extra, terms in rows), self.reflection)
+        terms = tuple(EquationRow(name, extra, tuple((unknown, monomial, _support(series))
+                                                     for unknown, monomial, series in terms))
+                      for name, extra, terms in rows)
+        return _the_one(Structure((*self.fields, *self.surfaces), len(self.fields), len(self.equations), self.longest,
+                                  terms, self.reflection))
 
-    @property
+    @cached_property
     def coefficients(self) -> np.ndarray:
-        """All Chebyshev coefficients that are not 0, term by term in the order of the structure."""
+        """All Chebyshev coefficients that may not be 0, term by term in the order of the structure."""
         rows = *(equation.terms for equation in self.equations), *self.conditions
-        return np.concatenate([series[series != 0] for terms in rows for *_, series in terms])
+        return np.concatenate([series[_places(series)] for terms in rows for *_, series in terms])
 
     def __eq__(self, other: Any) -> Any:
         return self.reflection == other.reflection and _same(self.equations, other.equations) and _same(
@@ -157,9 +169,9 @@ class System:
             return [forms[equation].terms[product] for equation, product in keys]
 
         fit = resolved(flow, layers, index, coefficients)
-        cuts = fit.cut.tolist()
+        cuts, longest = fit.cut.tolist(), max(map(len, fit.series)) if len(layers) >= _MANY else 0
         for equation, name in enumerate(_EQUATIONS):
-            here = [(*self._split(product), series, cut)
+            here = [(*self._split(product), _rounded(series, longest), cut)
                     for (index, product), series, cut in zip(keys, fit.series, cuts, strict=True)
                     if index == equation and (len(series) > 1 or series[0])]
             yield Equation(f"{layer.name}: {name}", tuple(term[:3] for term in here),
@@ -171,13 +183,17 @@ class System:
         return tuple((*self._split(names), _series(number)) for names, number in form.terms.items() if number)
 
     def _split(self, names: tuple[Any, ...]) -> tuple[Any, ...]:
-        """The one unknown among the names of a product, and the monomial of the others."""
-        all_ = self.fields + self.surfaces
-        unknowns = [name for name in names if name.rstrip("'").partition("@")[0] in all_]
-        if len(unknowns) != 1 or names.count("rate") > 1:
-            raise ParameterError("equations and conditions must be linear in the unknowns and in the rate: got "
-                                 f"{'*'.join(names) or 'a constant'}")
-        return unknowns[0], tuple(name for name in names if name != unknowns[0])
+        return _split(names, self.fields + self.surfaces)
+
+
+@lru_cache(maxsize=4096)
+def _split(names: tuple[str, ...], known: tuple[str, ...]) -> tuple[str, tuple[str, ...]]:
+    """The one unknown among the names of a product, and the monomial of the others."""
+    unknowns = [name for name in names if name.rstrip("'").partition("@")[0] in known]
+    if len(unknowns) != 1 or names.count("rate") > 1:
+        raise ParameterError("equations and conditions must be linear in the unknowns and in the rate: got "
+                             f"{'*'.join(names) or 'a constant'}")
+    return unknowns[0], tuple(name for name in names if name != unknowns[0])
 
 
 def _same(one: Any, other: Any) -> bool:
@@ -196,8 +212,37 @@ def _edge(layer: "Layer", end: int) -> Any:
     return SimpleNamespace(**{field: variable(f"{layer.name}.{field}@{end}") for field in FIELDS})
 
 
-def _support(series: np.ndarray) -> tuple[Any, ...]:
-    return tuple(series.nonzero()[0].tolist())
+@lru_cache(maxsize=64)
+def _the_one(structure: Structure) -> Structure:
+    """Of equal structures always the same object: what knows its hash and is compared by identity is found at once."""
+    return structure
+
+
+def _rounded(series: np.ndarray, longest: int) -> np.ndarray:
+    """The series, with zeros up to a length that others share: that of the `longest` of a layer, where that is short.
+
+    Flows whose series differ by a few terms then have one structure. Not so where `longest` is 0.
+    """
+    if len(series) <= _FEW or not longest:
+        return series
+    length = longest if longest <= _LENGTHS[-1] else len(series)
+    rounded = np.zeros(next((most for most in _LENGTHS if length <= most), -(-length // _STEP) * _STEP), series.dtype)
+    rounded[:len(series)] = series
+    return rounded
+
+
+def _places(series: np.ndarray) -> Any:
+    """Where the terms of a series are that may not be 0: of a long one all, or all of one parity."""
+    if len(series) <= _FEW:
+        return series.nonzero()[0]
+    even, odd = series[0] or series[::2].any(), series[1] or series[1::2].any()
+    return slice(int(not even), len(series), 1 if even and odd else 2)
+
+
+def _support(series: np.ndarray) -> "tuple[int, ...] | range":
+    """The indices of these terms."""
+    places = _places(series)
+    return range(*places.indices(len(series))) if isinstance(places, slice) else tuple(places.tolist())
 
 
 def _series(number: complex) -> np.ndarray:
@@ -209,23 +254,24 @@ def _check_conditions(flow: Any, given: tuple[Any, ...]) -> None:
     """Conditions are different forms with finite coefficients; their numbers in messages count from 1."""
     if not isinstance(given, tuple | list):
         raise ParameterError(f"{flow.name}: conditions(edges, names) must return a tuple (got {shown(given)})")
+    seen: list[dict[tuple[Any, ...], Any]] = []
     for number, form in enumerate(given, 1):
         if not isinstance(form, Form) or not any(form.terms.values()):
             raise ParameterError(f"{flow.name}: condition {number} has no unknown: it is to be a sum such as "
                                  f"edge.v + names.k * edge.w, that is 0 (got {shown(getattr(form, 'terms', form))})")
         for names, coefficient in form.terms.items():
-            if np.shape(coefficient) or not np.isfinite(coefficient):
+            if not (isinstance(coefficient, int | float | complex) and isfinite(coefficient)) and (
+                    np.shape(coefficient) or not np.isfinite(coefficient)):
                 raise ParameterError(f"{flow.name}: condition {number}: the coefficient of {'*'.join(names)} must be a "
                                      f"finite number (got {shown(coefficient)})")
-        for other in range(1, number):
-            if _proportional(given[other - 1].terms, form.terms):
+        terms = {names: value for names, value in form.terms.items() if value}
+        for other, before in enumerate(seen, 1):
+            if before.keys() == terms.keys() and _proportional(before, terms):
                 raise ParameterError(f"{flow.name}: conditions {other} and {number} say the same")
+        seen.append(terms)
 
 
 def _proportional(one: dict[tuple[Any, ...], Any], other: dict[tuple[Any, ...], Any]) -> bool:
-    one, other = ({names: value for names, value in terms.items() if value} for terms in (one, other))
-    if one.keys() != other.keys():
-        return False
     ratios = [complex(other[names] / value) for names, value in one.items()]
     return all(abs(ratio - ratios[0]) <= _PROPORTIONAL * abs(ratios[0]) for ratio in ratios)
 

@@ -5,6 +5,7 @@ one table serves every degree below its own. Entries are linear in the coefficie
 flow with the same structure, too.
 """
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -37,13 +38,13 @@ class Table:
                 blocks.append((*np.broadcast_arrays(structure.parts.index(monomial), number,
                                                     structure.unknowns.index(name), *entries), start + index, weight))
                 start += len(support)
-        self.part, self.equation, self.unknown, self.row, self.column, index, weight = (
-            np.concatenate(arrays, axis=-1) for arrays in zip(*blocks, strict=True))
+        *where, index, weight = (np.concatenate(arrays, axis=-1) for arrays in zip(*blocks, strict=True))
+        self.part, self.equation, self.unknown, self.row, self.column = (one.astype(np.int32) for one in where)
         entry = np.broadcast_to(np.arange(len(self.part)), index.shape)
         used = weight != 0
         self._map = csr_array((weight[used], (entry[used], index[used])), (len(self.part), start))
 
-    def _equation(self, unknown: str, support: tuple[Any, ...]) -> tuple[Any, ...]:
+    def _equation(self, unknown: str, support: Sequence[int]) -> tuple[Any, ...]:
         """Name, row, column, and which coefficients add with which weight to the entries of a term."""
         most = self.degree + self.tail + max(row.extra for row in self.structure.rows)
         row, column, index, weight = chebyshev.cells(support, unknown.endswith("'"), most, self.degree)

@@ -16,6 +16,7 @@ Times mu' the equation of the shear rate is g v' mu' ~ e v' zeta: regular where 
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -23,12 +24,15 @@ from numpy.polynomial import chebyshev as C
 
 from ..equations.layer import FIELDS, Layer, Profile
 from ..errors import ParameterError
+from ..numerics.chebyshev import at_points
 from ..numerics.smooth import Rough, fit
 from .base import parameter
 from .law import Law
 
 _REST = 1e-8  # inertial number at which friction of a law with a yield stress is to rise linearly
 _NODES = 96  # of quadrature over a piece
+_PIECES = 3  # of a creeping layer, at least
+_SECTIONS, _ROUNDS = 128, 8  # parts of a range of heights one of which has the floor, and how often it is divided
 _DEEPEST = 1e6  # zeta of a floor
 _LINEAR = 1e-3  # disagreement of its slope there with that at twice the number
 
@@ -45,8 +49,12 @@ class Sinking:
     zeta: float  # at the lower edge
     span: float  # of zeta
 
-    def at(self, law: Law, tau: float, s: Any) -> tuple[Any, Any, Any]:
-        """zeta, I and -dzeta/ds at the points s."""
+    def at(self, law: Law, tau: float, s: Any) -> tuple[Any, Any, Any, Any]:
+        """zeta, I, -dzeta/ds and mu'(I) at the points s."""
+        zeta, inertial, stretch = self._at(law, tau, s)
+        return zeta, inertial, stretch, law.slope(inertial)
+
+    def _at(self, law: Law, tau: float, s: Any) -> tuple[Any, Any, Any]:
         top, span = law.range[1], self.span
         if not np.isfinite(top):
             zeta, depth = self.zeta - span * s, self.depth + span * s
@@ -74,37 +82,44 @@ class Creeping:
     low: float  # I at the lower edge
     high: float
 
-    def at(self, law: Law, tau: float, s: Any) -> tuple[Any, Any, Any]:
-        """zeta, I and -dzeta/ds at the points s."""
+    def at(self, law: Law, tau: float, s: Any) -> tuple[Any, Any, Any, Any]:
+        """zeta, I, -dzeta/ds and mu'(I) at the points s."""
         fall = np.log(self.high / self.low)
-        inertial = np.clip(self.low * np.exp(fall * s), self.low, np.nextafter(self.high, 0))  # this side of breaks
+        inertial = np.maximum(self.low * np.exp(fall * s), self.low)
+        inertial = np.minimum(inertial, np.nextafter(self.high, 0))  # this side of breaks
         mu = law.mu(inertial)
-        zeta = np.sqrt(tau / mu)
-        return zeta, inertial, zeta * law.slope(inertial) * inertial * fall / (2 * mu)
+        zeta, slope = np.sqrt(tau / mu), law.slope(inertial)
+        return zeta, inertial, zeta * slope * inertial * fall / (2 * mu), slope
 
 
 @dataclass(frozen=True)
 class Piece:
-    """Part of the bed between two heights at which the law is smooth, with its velocity."""
+    """Part of the bed between two heights at which the law is smooth, or a piece of such a part, with its velocity."""
 
     heights: Sinking | Creeping
     singular: bool  # whether its lower edge is the yield surface
     low: float  # velocity at the lower edge
     series: Any  # of the velocity above it
 
+    def velocity(self, s: Any) -> Any:
+        """U at the points s."""
+        many = isinstance(s, np.ndarray) and s.ndim == 1
+        return self.low + (at_points(s, self.series) if many else C.chebval(2 * s - 1, self.series))
+
     @property
     def top(self) -> float:
-        return self.low + float(C.chebval(1.0, self.series))
+        return float(self.velocity(1.0))
 
 
 @lru_cache(maxsize=512)
 def pieces(law: Law, shields: float, creep: float) -> tuple[Piece, ...]:
     """The parts of the bed from below, with their velocities by quadrature to rounding."""
     tau = law.rest * shields
+    parts: Any = _yielding(law, tau, shields) if law.yields else _creeping(law, tau, creep)
     found: list[Piece] = []
-    for heights in _yielding(law, tau, shields) if law.yields else _creeping(law, tau, creep):
+    for heights, series in zip(parts, _velocities(law, tau, parts), strict=True):
         low = found[-1].top if found else 0.0
-        found.append(Piece(heights, law.yields and not found, low, _velocity(law, tau, heights)))
+        found.append(Piece(heights, law.yields and not found, low, series))
     return tuple(found)
 
 
@@ -129,43 +144,56 @@ def _creeping(law: Any, tau: Any, creep: Any) -> Any:
     if not slow(np.exp(low)):
         raise ParameterError(f"law {law.name}: friction falls too fast as I -> 0 for creep = {creep:g}: the floor "
                              f"lies {_DEEPEST:g} lengths deep; raise creep")
-    while low < (middle := (low + high) / 2) < high:
-        low, high = (middle, high) if slow(np.exp(middle)) else (low, middle)
+    for _ in range(_ROUNDS):  # down to rounding
+        grid = np.linspace(low, high, _SECTIONS + 1)
+        last = np.count_nonzero(slow(np.exp(grid[:-1]))) - 1
+        low, high = grid[max(last, 0): last + 2]
     bottom = float(np.exp(high))
     edges = [bottom, *sorted(one for one in law.breaks if bottom < one < surface), surface]
-    return [Creeping(slow, fast) for slow, fast in zip(edges, edges[1:], strict=False)]
+    return [Creeping(slow, fast) for slow, fast in pairwise(divided(edges))]
 
 
-def _velocity(law: Law, tau: float, heights: "Sinking") -> np.ndarray:
-    """T-coefficients of the velocity over that at the lower edge: the antiderivative of the series of I zeta dz/ds."""
-    def slope(s: np.ndarray) -> np.ndarray:
-        zeta, inertial, stretch = heights.at(law, tau, s)
-        return np.asarray(2 * stretch * zeta**2 * inertial)[None]
+def divided(edges: list[float]) -> list[float]:
+    """The inertial numbers between which a creeping layer has its pieces, from those between which its law is smooth.
+
+    Rapid flow, the last of those parts, is divided by even factors into what is left of three pieces: one series over
+    all of it would be long. The number of pieces depends on no parameter, so that modes of one flow resemble those of
+    the next.
+    """
+    low, high = edges[-2:]
+    count = max(1, _PIECES + 2 - len(edges))
+    return [*edges[:-2], *(low * (high / low) ** (number / count) for number in range(count)), high]
+
+
+def _velocities(law: Law, tau: float, parts: "list[Sinking] | list[Creeping]") -> list[np.ndarray]:
+    """T-coefficients of the velocities over those at the lower edges: antiderivatives of the series of I zeta dz/ds."""
+    def slopes(s: np.ndarray) -> np.ndarray:
+        states = (heights.at(law, tau, s) for heights in parts)
+        return np.array([2 * stretch * zeta**2 * inertial + 0 * s for zeta, inertial, stretch, _ in states])
 
     try:
-        found = fit(slope)
+        found = fit(slopes)
     except Rough as rough:
         raise ParameterError(f"law {law.name}: the shear rate of the bed is not smooth near s = {rough.s:.4g}: "
                              "friction must rise smoothly with I, linearly from rest, and the stress stay clear of its "
                              "largest value") from None
-    return C.chebint(found.series[0], lbnd=-1) / 2
+    return [C.chebint(series, lbnd=-1) / 2 for series in found.series]
 
 
 def profile(law: Law, tau: float, piece: Piece, inertia: float = 1.0) -> Callable[[Any], Profile]:
     """Return the base state of a piece as a function of s."""
-    scale = float(law.slope(piece.heights.at(law, tau, np.array([1.0]))[1])[0])
+    scale = float(piece.heights.at(law, tau, np.array([1.0]))[3][0]) if law.yields else 1.0
 
     def at(s: np.ndarray) -> Profile:
-        zeta, inertial, stretch = piece.heights.at(law, tau, s)
+        zeta, inertial, stretch, slope = piece.heights.at(law, tau, s)
         with np.errstate(divide="ignore", invalid="ignore"):
-            slope = law.slope(inertial)
             shear_rate = inertial * zeta
             dg = stretch * (2 * tau / (zeta**2 * slope) - inertial)
             eta = tau / shear_rate
         return Profile(
             dz=2 * stretch * zeta,
             rho=inertia,
-            U=piece.low + C.chebval(2 * s - 1, piece.series),
+            U=piece.velocity(s),
             dU=shear_rate,
             eta=eta,
             beta=slope * zeta,
@@ -210,6 +238,7 @@ def creep_parameter(law: type[Law], floor: str = "floor of the bed", surface: st
         meaning=f"{what} at the rigid {floor} over that at the {surface}; the law has no yield stress")}
 
 
+@lru_cache(maxsize=512)
 def flux_slopes(law: Law, shields: float, creep: float) -> tuple[float, float]:
     """Return dQ/d(shields) of the flux Q of grains, and dQ/dh, of the height h of the bed over a rigid floor.
 
@@ -219,14 +248,21 @@ def flux_slopes(law: Law, shields: float, creep: float) -> tuple[float, float]:
     """
     tau, total = law.rest * shields, 0.0
     parts = pieces(law, shields, creep)
+    nodes, weights = _quadrature()
     for piece in parts:
-        nodes, weights = np.polynomial.legendre.leggauss(_NODES)
-        zeta, inertial, stretch = piece.heights.at(law, tau, (1 + nodes) / 2)
-        total += float(weights @ (stretch * (zeta**2 - 1) * law.rest / law.slope(inertial)))
+        zeta, _, stretch, slope = piece.heights.at(law, tau, nodes)
+        total += float(weights @ (stretch * (zeta**2 - 1) * law.rest / slope))
     if law.yields:
         return total, 0.0
-    zeta, inertial, _ = parts[0].heights.at(law, tau, 0.0)
+    zeta, inertial, *_ = parts[0].heights.at(law, tau, 0.0)
     return total, float((zeta**2 - 1) * inertial * zeta)
+
+
+@lru_cache(maxsize=1)
+def _quadrature() -> tuple[np.ndarray, np.ndarray]:
+    """Points in 0 < s < 1, and twice the weights of an integral over s."""
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    return (1 + nodes) / 2, weights
 
 
 def lowest(law: Law, shields: float, creep: float) -> float:

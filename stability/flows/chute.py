@@ -14,6 +14,8 @@ walls they are taken as a rigid core.
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import lru_cache
+from itertools import pairwise
 from typing import Any, ClassVar
 
 import numpy as np
@@ -55,6 +57,20 @@ class CreepingLayer:
         fall = np.log(self.fast / self.slow)
         inertial = np.clip(self.fast * np.exp(-fall * s), self.slow, np.nextafter(self.fast, 0))  # this side of breaks
         return self.unit * law.mu(inertial), inertial, self.unit * law.slope(inertial) * inertial * fall
+
+
+@lru_cache(maxsize=256)
+def zones(law: Law, plug: float, creep: float) -> "tuple[Zone | CreepingLayer, ...]":
+    """The layers from the wall to the plug, or to a rigid core: those of a creeping flow have short series."""
+    unit = plug / law.rest
+    wall = float(law.inverse(1 / unit))
+    if law.yields:
+        inner = (unit * float(law.mu(one)) for one in law.breaks)
+        ends = [1.0, *sorted((x for x in inner if plug < x < 1), reverse=True), plug]
+        return tuple(Zone(outer, inside, unit, plug) for outer, inside in pairwise(ends))
+    core = creep * wall
+    ends = beds.divided([core, *sorted(one for one in law.breaks if core < one < wall), wall])
+    return tuple(CreepingLayer(fast, slow, unit) for fast, slow in pairwise(ends[::-1]))
 
 
 @dataclass(frozen=True)
@@ -105,15 +121,7 @@ class Chute(Saturated):
     @property
     def _zones(self) -> Any:
         """From the wall to the plug."""
-        law, unit = self.law, self.plug / self.law.rest
-        wall = float(law.inverse(1 / unit))
-        if not law.yields:
-            core = self.creep * wall  # type: ignore[attr-defined]
-            ends = [wall, *sorted((one for one in law.breaks if core < one < wall), reverse=True), core]
-            return [CreepingLayer(fast, slow, unit) for fast, slow in zip(ends, ends[1:], strict=False)]
-        inner = (unit * float(law.mu(one)) for one in law.breaks)
-        ends = [1.0, *sorted((x for x in inner if self.plug < x < 1), reverse=True), self.plug]
-        return [Zone(outer, inside, unit, self.plug) for outer, inside in zip(ends, ends[1:], strict=False)]
+        return zones(self.law, self.plug, getattr(self, "creep", 0.0))
 
     def _state(self, zone: "Zone") -> Callable[[Any], Equilibrium]:
         law = self.law

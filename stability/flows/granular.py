@@ -89,8 +89,8 @@ class Granular(Flow, metaclass=_Scene):
     @property
     def law(self) -> Law:
         """The friction law."""
-        names = [item.name for item in fields(self.friction) if item.name not in self.unit]
-        return self.friction(**{name: getattr(self, name) for name in names}, **self.unit)
+        kind: Any = self.friction
+        return _law(kind, tuple(self.unit.get(item.name, getattr(self, item.name, None)) for item in fields(kind)))
 
     def with_law(self, law: Law) -> "Granular":
         """Return the flow with another friction law and its other parameters."""
@@ -142,6 +142,11 @@ def _under(scene: Any, law: Any) -> Any:
     namespace = {"__module__": scene.__module__, "__qualname__": scene.__qualname__, "__doc__": scene.__doc__,
                  "__repr__": Granular.__repr__, "scene": scene, "friction": law, "unit": {}}
     return make_dataclass(scene.__name__, columns, bases=(scene,), namespace=namespace, frozen=True, repr=False)
+
+
+@lru_cache(maxsize=256)
+def _law(friction: Any, values: tuple[float, ...]) -> Law:
+    return friction(*values)
 
 
 def _declared(usual: Any, item: Any) -> Any:

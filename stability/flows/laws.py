@@ -1,5 +1,6 @@
 """The friction laws of this package, by name, and those of one's own; what a law is: `stability.flows.law`."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from math import exp, inf, radians, tan
@@ -197,18 +198,29 @@ class Regularised(Law):
         return self.mu1
 
     def mu(self, I: Any) -> Any:  # noqa: E741
-        slow = np.minimum(I, self.I1)
-        with np.errstate(divide="ignore"):
-            lower = np.sqrt(self.alpha / np.log(self.A / slow))
-        return np.where(np.less(I, self.I1), lower, self._upper(I))
+        return self._by_branch(I, self._lower, self._upper)
 
     def slope(self, I: Any) -> Any:  # noqa: E741
-        I = np.asarray(I, dtype=float)  # noqa: E741
-        first = self._first
+        return self._by_branch(np.asarray(I, dtype=float), self._lower_slope, self._upper_slope)
+
+    def _by_branch(self, I: Any, lower: Callable[..., Any], upper: Callable[..., Any]) -> Any:  # noqa: E741
+        """Values of one function below I1, of the other one above: where all are on one side, of that alone."""
+        I1, A = self.I1, self.A
+        slow = np.less(I, I1)
+        if not slow.any():
+            return upper(I)
         with np.errstate(divide="ignore", invalid="ignore"):
-            lower = self.mu(np.minimum(I, self.I1)) ** 3 / (2 * self.alpha * I)
-        upper = (first * self.I0 + self.mu_inf * I * (2 * self.I0 + I)) / (self.I0 + I) ** 2
-        return np.where(self.I1 > I, lower, upper)
+            below = lower(np.minimum(I, I1), A)
+        return below if slow.all() else np.where(slow, below, upper(I))
+
+    def _lower(self, I: Any, A: Any) -> Any:  # noqa: E741
+        return np.sqrt(self.alpha / np.log(A / I))
+
+    def _lower_slope(self, I: Any, A: Any) -> Any:  # noqa: E741
+        return self._lower(I, A) ** 3 / (2 * self.alpha * I)
+
+    def _upper_slope(self, I: Any) -> Any:  # noqa: E741
+        return (self._first * self.I0 + self.mu_inf * I * (2 * self.I0 + I)) / (self.I0 + I) ** 2
 
     def inverse(self, mu: Any) -> Any:
         self.check(mu)

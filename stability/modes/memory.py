@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from .mode import Mode
     from .solver import Solver
 
-KEPT = 8  # branches, some megabytes each
+KEPT = 8  # branches, some megabytes each ...
+_MOST = 4_000_000  # ... and entries of all their matrices, some 30 bytes each
 _AHEAD = 20  # wavenumbers whose functions of k are evaluated with those of the modes that are known
 _NEAR = 0.8  # largest distance of flows, in the logarithms of their parameters, whose branches resemble one another
 
@@ -57,8 +58,12 @@ def branch_of(solver: "Solver", make: Callable[..., Any], wavenumbers: Any) -> I
         with _lock:
             branches = _kept.get()
             branches[key] = branch
-            while len(branches) > KEPT:
+            while len(branches) > KEPT or len(branches) > 1 and _entries(branches) > _MOST:
                 branches.popitem(last=False)
+
+
+def _entries(branches: OrderedDict) -> int:
+    return sum(branch.solver.assembly.entries for branch in branches.values())
 
 
 def _nearest(flow: "Flow", *others: Any) -> "Branch | None":

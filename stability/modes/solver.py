@@ -1,6 +1,8 @@
 """The solver of one flow: refines a mode at the degree it needs, with error bars."""
 
+from collections.abc import Callable
 from functools import cached_property, lru_cache
+from math import log
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +19,6 @@ from .mode import Mode
 from .response import data_error, spread_of
 
 if TYPE_CHECKING:
-    from ..equations.system import Structure
     from ..equations.table import Table
     from ..flows.base import Flow
     from ..numerics.refine import Eigen
@@ -28,12 +29,12 @@ _OVERSOLVED = 1e-7  # truncation over rounding below which one rung less of the 
 _VECTOR, _ROUGHEST = 0.01, 1e-6  # error of vectors without bars, in units of the tolerance; the largest
 _SCATTER = 40.0  # error of a slope from vectors right to rounding, in units of error times 1 or 1/k (measured)
 _BLIND = 12  # degree to try first where nothing is known
-_LEAST = 32  # degree of the smallest table of entries
+_LEAST = 24  # degree of the smallest table of entries
 _DECADES = 3.0  # that coefficients span at most where only structure counts: eigenvalues stand out from rounding
-_SMALL = 1024  # degree times terms of the longest series up to which layouts, some megabytes each, are kept ...
-_LAYOUTS, _TABLES = 48, 8  # ... for other flows, and how many
-_TOGETHER = 64, 4096  # points refined at once, and those times the degree: bounds the memory
-_EPS = np.finfo(float).eps
+_SMALL, _LARGE = 1024, 4096  # degree times terms of the longest series up to which layouts, some megabytes each, ...
+_KEPT = (48, 8), (12, 3)  # ... are kept for other flows, and how many with how many tables: of small and of large ones
+_TOGETHER = 64, 600_000  # points refined at once, and the numbers in their matrices: what fits into a cache
+_EPS, _TINY = np.finfo(float).eps, np.finfo(float).tiny
 _REMEMBERED = 10_000  # wavenumbers whose functions and weights are kept
 _ROUNDING = 4.0  # standard deviations of the accumulated rounding that the error bar spans
 
@@ -64,20 +65,25 @@ class Assembly:
         """The pencil of this degree with coefficients brought to similar sizes: of it holds what depends on the
         structure alone, which enormous ratios of numbers would hide."""
         coefficients, layout = self.system.coefficients, self._layout(degree)
-        sizes = np.abs(coefficients)
+        sizes = np.where(coefficients, np.abs(coefficients), np.abs(coefficients).max())
         decades = np.log10(sizes.max() / sizes.min())
         values = layout.table.values(coefficients * sizes ** (min(1.0, _DECADES / max(decades, _DECADES)) - 1))
         return Pencil(layout, values, self.system)
 
     @property
     def small(self) -> bool:
-        """Whether its matrices take a few megabytes at most."""
-        return all(table.degree * table.structure.longest <= _SMALL for table in self._values)
+        """Whether its matrices are not too large to be kept."""
+        return all(table.degree * table.structure.longest <= _LARGE for table in self._values)
+
+    @property
+    def entries(self) -> int:
+        """Entries of its matrices if they were full: what they take in memory goes with that."""
+        return sum(pencil.size**2 for pencil in self._pencils.values())
 
     def _layout(self, degree: int) -> Layout:
         structure, size = self.system.structure, max(_LEAST, 1 << int(degree - 1).bit_length())
-        if size * structure.longest <= _SMALL:
-            return _layout_of(structure, degree, size)
+        if size * structure.longest <= _LARGE:
+            return _LAYOUTS[size * structure.longest > _SMALL](structure, degree, size)
         large = (table for table in self._values if table.degree == size)
         return Layout(next(large, None) or Table(structure, size), degree)
 
@@ -90,14 +96,13 @@ class Assembly:
         return self if other.system == self.system else other
 
 
-@lru_cache(maxsize=_LAYOUTS)
-def _layout_of(structure: "Structure", degree: int, size: int) -> Layout:
-    return Layout(_table_of(structure, size), degree)
+def _layouts(layouts: int, tables: int) -> Callable[..., Layout]:
+    """A function of structure, degree and size of the table that keeps so many layouts and tables."""
+    table_of = lru_cache(maxsize=tables)(Table)
+    return lru_cache(maxsize=layouts)(lambda structure, degree, size: Layout(table_of(structure, size), degree))
 
 
-@lru_cache(maxsize=_TABLES)
-def _table_of(structure: "Structure", degree: int) -> "Table":
-    return Table(structure, degree)
+_LAYOUTS = tuple(_layouts(*kept) for kept in _KEPT)
 
 
 class Solver:
@@ -183,16 +188,15 @@ class Solver:
         `vectors` is (degree, x, y) of a nearby mode, if known. Raises ModeLost where the iteration
         does not settle; a mode still unresolved at the largest degree is returned with that status.
         """
-        start = self.degrees.index(degree or (vectors[0] if vectors else self.rung_degree(_BLIND)))
-        for degree in self.degrees[start:]:
+        degree = degree or (vectors[0] if vectors else self.rung_degree(_BLIND))
+        while True:
             pencil = self.pencil(degree)
             x, y = transfer(self, vectors, degree) if vectors else (None, None)
             eigen = refine(pencil, self.weights(k), rate, x, y, self.bars, self.vectors)
             mode = self._mode(k, degree, eigen)
-            if glance or self.fits(mode):
-                break
-            rate, vectors = eigen.rate, (degree, eigen.x, eigen.y)
-        return mode
+            if glance or degree == self.degrees[-1] or self.fits(mode):
+                return mode
+            rate, vectors, degree = eigen.rate, (degree, eigen.x, eigen.y), self.likely_degree(mode)
 
     def foreseen(self, k: float, rate: complex, part: float) -> "Mode | None":
         """The mode that is foreseen at k, if it is resolved and its rate is this one to a small part of it."""
@@ -209,9 +213,22 @@ class Solver:
         return next((degree for degree in self.degrees if degree >= least), self.degrees[-1])
 
     def likely_degree(self, mode: Mode) -> int:
-        """The degree to try first where a rougher solver has found this mode: a higher one where its own is too low."""
-        rung = self.degrees.index(mode.degree)
-        return self.degrees[min(rung + (not self.fits(mode)), len(self.degrees) - 1)]
+        """The degree to try first where this solver, or a rougher one, has found a mode: a higher one if its own is too
+        low, the last that is no larger than where its error is small enough if its series fall on as they do."""
+        if self.fits(mode):
+            return mode.degree
+        rung = min(self.degrees.index(mode.degree) + 1, len(self.degrees) - 1)
+        layout = self.pencil(mode.degree).layout
+        shares = np.abs(mode.x[layout.ends]).sum(axis=2) * np.abs(mode.y[layout.last]).max(axis=1)  # of the truncation
+        sizes = np.log(shares.sum(axis=1))
+        fall, faster = sizes[1] - sizes[2], max(2 * sizes[1] - sizes[0] - sizes[2], 0.0) / 2  # half: falls are uneven
+        if fall > 0:  # from here on by fall + faster, fall + 2 faster ...
+            excess = log(mode.truncation / max(mode.rounding, self.truncation * abs(mode.sigma), _TINY))
+            fall += faster / 2
+            steps = 2 * excess / (fall + (fall**2 + 2 * faster * excess) ** 0.5)
+            enough = min(2 * mode.degree, mode.degree + layout.structure.stride * layout.ends.shape[2] * steps)
+            rung = max(rung, int(np.searchsorted(self.degrees, enough, side="right")) - 1)
+        return self.degrees[rung]
 
     def solve_many(self, wavenumbers: list[float], rates: np.ndarray | None, vectors: list[np.ndarray],
                    degree: int) -> list[Any]:
@@ -221,7 +238,7 @@ class Solver:
         the quotients of the vectors are.
         """
         modes, (x, y) = [], vectors
-        count = max(1, min(_TOGETHER[0], _TOGETHER[1] // degree))
+        count = max(1, min(_TOGETHER[0], _TOGETHER[1] // self.pencil(degree).layout.places.count))
         for first in range(0, len(wavenumbers), count):
             part = slice(first, first + count)
             eigen = refine_many(self.pencil(degree), self.weights(wavenumbers[part]),

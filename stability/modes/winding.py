@@ -3,12 +3,9 @@
 from collections.abc import Callable
 from itertools import pairwise
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from ..equations.pencil import Pencil
 
 _SIDE = 6, 2, 2, 2  # points along the line and along the other sides of the contour
 _TURN = 1.0  # largest turn (radians) between neighbouring points of the contour
@@ -20,15 +17,16 @@ def winding(solver: Any, degree: Any, k: Any, known: Any, line: Any) -> Any:
     """How often the determinant over (rate - known) turns around the rates above the line."""
     pencil = solver.pencil(degree)
     weights = pencil.weights(solver.symbols(k))
-    banded = _turns(lambda rates: _banded_phases(pencil, weights.value, np.array(rates)), known, line, 0)
+    inner, own = (pencil.condensed, pencil.condensed.weights(weights)) if pencil.condensed else (pencil, weights)
+    banded = _turns(lambda rates: _banded_phases(inner, own.value, np.array(rates)), known, line, 0)
     if banded is not None and abs(banded) < _FLAT:
         return 0
     a, b = pencil.pair(weights)
     return round(_turns(lambda rates: [_phase(a - rate * b) for rate in rates], known, line, _HALVINGS) / (2 * pi))
 
 
-def _banded_phases(pencil: "Pencil", weights: np.ndarray, rates: np.ndarray) -> np.ndarray:
-    """The determinants at these rates over their moduli, from band factors."""
+def _banded_phases(pencil: Any, weights: np.ndarray, rates: np.ndarray) -> np.ndarray:
+    """The determinants at these rates over their moduli, from band factors; but for a sign where it is condensed."""
     factors = pencil.factors(np.repeat(weights[:, None], len(rates), axis=1), rates)
     return np.where(factors.uneven, [pencil.factors(weights, rate).phase() if uneven else 0 for rate, uneven in
                                      zip(rates.tolist(), factors.uneven, strict=True)], factors.phases())

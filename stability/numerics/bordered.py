@@ -31,22 +31,32 @@ class Places:
 
     def __init__(self, part: np.ndarray, row: np.ndarray, column: np.ndarray, parts: int, interior: int,
                  border: int) -> None:
-        inside, below = (row < interior) & (column < interior), row >= interior
-        shift = (row - column)[inside]
         self.interior, self.border = interior, border
-        self.lower, self.upper = int(max(shift.max(initial=0), 0)), int(max(-shift.min(initial=0), 0))
-        width = 2 * self.lower + self.upper + 1
-        self._shapes = (interior, width), (interior, border), (border, interior + border)
+        inside, below = (row < interior) & (column < interior), row >= interior
+        shape, place = self._inner(row, column, inside)
+        self._shapes = shape, (interior, border), (border, interior + border)
         self._starts = np.cumsum([0, *(rows * columns for rows, columns in self._shapes)])
-        place = np.where(inside, column * width + self.lower + self.upper + row - column,
-                         self._starts[1] + row * border + column - interior)
+        self.count = int(self._starts[-1])
+        place = np.where(inside, place, self._starts[1] + row * border + column - interior)
         place[below] = (self._starts[2] + (row - interior) * (interior + border) + column)[below]
-        self._order = np.argsort(place, kind="stable")
+        self._order = np.argsort(place, kind="stable").astype(np.int32)
         place = place[self._order]
         first = np.flatnonzero(np.diff(place, prepend=-1))
-        self._place, self.row, self.column = place[first], row[self._order][first], column[self._order][first]
+        self._place = place[first]
+        self.row, self.column = (index[self._order][first].astype(np.int32) for index in (row, column))
         self._matrix = csr_array((np.zeros(len(place)), part[self._order], np.append(first, len(place))),
                                  (len(first), parts))
+
+    def _inner(self, row: np.ndarray, column: np.ndarray, inside: np.ndarray) -> tuple[tuple[int, int], np.ndarray]:
+        """The shape of the array of the interior, and where entries lie in it."""
+        shift = (row - column)[inside]
+        self.lower, self.upper = int(max(shift.max(initial=0), 0)), int(max(-shift.min(initial=0), 0))
+        width = 2 * self.lower + self.upper + 1
+        return (self.interior, width), column * width + self.lower + self.upper + row - column
+
+    def factors(self, band: np.ndarray) -> Any:
+        """LU factors of the interior."""
+        return BandFactors(band, self.lower, self.upper)
 
     def matrix(self, value: np.ndarray) -> Any:
         """The sparse matrix (places, parts) of entries with these values (entries,)."""
@@ -58,6 +68,27 @@ class Places:
         flat[..., self._place] = values
         return tuple(flat[..., start: stop].reshape(*values.shape[:-1], *shape) for start, stop, shape in
                      zip(self._starts[:-1], self._starts[1:], self._shapes, strict=True))
+
+
+class BandFactors:
+    """LU factors of a band as `Places` stores it, by columns; `failed` where a pivot vanishes."""
+
+    def __init__(self, band: np.ndarray, lower: int, upper: int) -> None:
+        factor, self._solve = _BAND[band.dtype.kind]
+        self._lower, self._upper = lower, upper
+        self._lu, self._pivots, self.failed = factor(band.T, lower, upper, overwrite_ab=True)
+
+    def solve(self, right: np.ndarray, trans: int = 0) -> np.ndarray:
+        """Return z with M z = right, or M^T z = right."""
+        return self._solve(self._lu, self._lower, self._upper, right, self._pivots, trans=trans)[0]
+
+    def coupled(self, right: np.ndarray) -> np.ndarray:
+        """Return z with M z = right, the border beside the interior."""
+        return self.solve(right)
+
+    def phase(self) -> Any:
+        """Return the determinant over its modulus."""
+        return phase(self._lu[self._lower + self._upper], self._pivots)
 
 
 class Bordered:
@@ -117,20 +148,17 @@ class Factors:
     def __init__(self, bordered: "Bordered", weights: np.ndarray) -> None:
         (band, right, bottom), self._scales = bordered.sum(weights)
         self.uneven = self._scales is not None
-        factor, self._solve = _BAND[band.dtype.kind]
-        places = bordered.places
-        self._interior, self._lower, self._upper = places.interior, places.lower, places.upper
-        self._lu, self._pivots, info = factor(band.T, self._lower, self._upper, overwrite_ab=True)
-        if info:
+        self._interior, self._inner = bordered.places.interior, bordered.places.factors(band)
+        if self._inner.failed:
             raise np.linalg.LinAlgError("singular interior")
         self._bottom = bottom[:, : self._interior]
-        self._coupled = self._inner(right)
+        self._coupled = self._inner.coupled(right)
         self._schur = bottom[:, self._interior:] - self._bottom @ self._coupled
         self._border = _inverse(self._schur)
 
     def phase(self) -> Any:
         """Return the determinant over its modulus (scales are positive: they leave it alone)."""
-        return _phase(self._lu[self._lower + self._upper], self._pivots) * np.linalg.slogdet(self._schur)[0]
+        return self._inner.phase() * np.linalg.slogdet(self._schur)[0]
 
     def solve(self, f: Any) -> Any:
         """Return z with M z = f, (size, points) or (size,)."""
@@ -140,7 +168,7 @@ class Factors:
         return self._solved(f)
 
     def _solved(self, f: np.ndarray) -> np.ndarray:
-        inner = self._inner(f[: self._interior])
+        inner = self._inner.solve(f[: self._interior])
         border = self._border @ (f[self._interior:] - self._bottom @ inner)
         return np.concatenate([inner - self._coupled @ border, border])
 
@@ -154,14 +182,11 @@ class Factors:
     def _solved_left(self, g: Any) -> Any:
         inner, border = g[: self._interior], g[self._interior:]
         border = self._border.T @ (border - self._coupled.T @ inner)
-        return np.concatenate([self._inner(inner - self._bottom.T @ border, trans=1), border])
-
-    def _inner(self, right: np.ndarray, trans: int = 0) -> np.ndarray:
-        return self._solve(self._lu, self._lower, self._upper, right, self._pivots, trans=trans)[0]
+        return np.concatenate([self._inner.solve(inner - self._bottom.T @ border, trans=1), border])
 
 
-def _phase(diagonal: Any, pivots: Any) -> Any:
-    """The determinant over its modulus of a band with this diagonal of U."""
+def phase(diagonal: Any, pivots: Any) -> Any:
+    """The determinant over its modulus of a matrix with this diagonal of U."""
     swaps = np.count_nonzero(pivots != np.arange(len(pivots)))
     phases = np.prod(diagonal / np.abs(diagonal))
     return (-1) ** swaps * phases / abs(phases)
@@ -176,17 +201,14 @@ class ManyFactors:
     def __init__(self, bordered: "Bordered", weights: np.ndarray) -> None:
         (band, right, bottom), self.uneven = bordered.sums(weights)
         places = bordered.places
-        factor, self._solve = _BAND[band.dtype.kind]
-        self._interior, self._shape = places.interior, (places.lower, places.upper)
-        self._factors = [factor(one.T, *self._shape, overwrite_ab=True)[:2] for one in band]
+        self._interior, self._inner = places.interior, [places.factors(one) for one in band]
         self._bottom = bottom[..., : self._interior]
-        self._coupled = np.array([self._inner(index, one) for index, one in enumerate(right)])
+        self._coupled = np.array([inner.coupled(one) for inner, one in zip(self._inner, right, strict=True)])
         self._schur = bottom[..., self._interior:] - self._bottom @ self._coupled
 
     def phases(self) -> np.ndarray:
         """Return the determinants over their moduli (points,)."""
-        bands = [_phase(lu[sum(self._shape)], pivots) for lu, pivots in self._factors]
-        return np.array(bands) * np.linalg.slogdet(self._schur)[0]
+        return np.array([inner.phase() for inner in self._inner]) * np.linalg.slogdet(self._schur)[0]
 
     @cached_property
     def _border(self) -> np.ndarray:
@@ -201,7 +223,7 @@ class ManyFactors:
     def solve(self, f: Any) -> Any:
         """Return z with M z = f at every point."""
         f = f.T
-        inner = np.array([self._inner(index, one) for index, one in enumerate(f[:, : self._interior])])[..., None]
+        inner = self._solved(f[:, : self._interior])[..., None]
         border = self._border @ (f[:, self._interior:, None] - self._bottom @ inner)
         return np.concatenate([inner - self._coupled @ border, border], axis=1)[..., 0].T
 
@@ -209,10 +231,8 @@ class ManyFactors:
         """Return z with z^T M = g^T (no conjugation) at every point."""
         inner, border = g.T[:, None, : self._interior], g.T[:, None, self._interior:]
         border = (border - inner @ self._coupled) @ self._border
-        inner = (inner - border @ self._bottom)[:, 0]
-        inner = np.array([self._inner(index, one, trans=1) for index, one in enumerate(inner)])
+        inner = self._solved((inner - border @ self._bottom)[:, 0], trans=1)
         return np.concatenate([inner, border[:, 0]], axis=1).T
 
-    def _inner(self, index: int, right: np.ndarray, trans: int = 0) -> np.ndarray:
-        lu, pivots = self._factors[index]
-        return self._solve(lu, *self._shape, right, pivots, trans=trans)[0]
+    def _solved(self, right: np.ndarray, trans: int = 0) -> np.ndarray:
+        return np.array([inner.solve(one, trans) for inner, one in zip(self._inner, right, strict=True)])

@@ -5,6 +5,7 @@ d phi_j / dx = T_{j-1}. In this basis a first-order equation f' - a f = 0 become
 equation of the second kind: its matrix is banded where a is a polynomial, and well conditioned.
 """
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.polynomial import chebyshev as C
 
 FEW = 4  # coefficients of a series that an entry of its matrix depends on
+_BESIDE = 32  # polynomials kept for a series of up to so many terms, or a multiple
 CHOP = 8 * np.finfo(float).eps  # of the largest coefficient of a series: less is taken for rounding
 
 
@@ -62,6 +64,17 @@ def values(series: Any) -> Any:
     return np.fft.irfft(waves)[..., count - 1:: -1]
 
 
+def at_points(s: np.ndarray, series: np.ndarray) -> np.ndarray:
+    """A T-series at the points 0 <= s <= 1 (points,); their polynomials are kept, since many series have the same."""
+    most = -(-len(series) // _BESIDE) * _BESIDE
+    return _polynomials(np.ascontiguousarray(s, float).tobytes(), most)[:, :len(series)] @ series
+
+
+@lru_cache(maxsize=8)
+def _polynomials(s: bytes, count: int) -> np.ndarray:
+    return C.chebvander(2 * np.frombuffer(s) - 1, count - 1)
+
+
 @lru_cache(maxsize=8)
 def _twist(count: int) -> np.ndarray:
     """Factors (count,) that turn the waves of a mirrored sequence of 2 count samples into T-coefficients."""
@@ -84,7 +97,8 @@ def entries(series: list[np.ndarray], slopes: list[bool], count: int, degree: in
     return tuple(np.concatenate(arrays) for arrays in zip(*found, strict=True))
 
 
-def cells(support: tuple[Any, ...], slope: bool, count: int, degree: int) -> tuple[np.ndarray, ...]:
+@lru_cache(maxsize=32)
+def cells(support: Sequence[int], slope: bool, count: int, degree: int) -> tuple[np.ndarray, ...]:
     """Where the matrix of a series times f, or df/ds with `slope`, has entries, and how those follow from the series.
 
     `support` are the indices of its T-coefficients that are not 0. Returns row and column (cells,) and, for each of a

@@ -30,6 +30,7 @@ _FACTORISATIONS = 12
 _ROUNDS = 3  # of factorisations at many points
 _CORRECTIONS = 12
 VECTOR = 1e-9  # error of a vector, and so of the slope, that is accepted
+_ALONE = 40  # degree from which on a single eigenvalue is sought in what is condensed of a pencil: that takes a while
 _sum = np.add.reduce  # over the parts
 _OFFSET = 1e-3  # of a factorisation for corrections from its rate: it must not be singular
 
@@ -70,17 +71,18 @@ def refine(pencil: Any, weights: Any, rate: complex, x: np.ndarray | None = None
     wrong by `accuracy` at most, the rate by its square: less is right for a rough look.
     """
     x, y = (_start(pencil.size) if vector is None else vector for vector in (x, y))
-    y, arithmetic = y.conj(), pencil.arithmetic  # y^H from here on
+    inner, own, x, y = _inside(pencil.condensed if pencil.degree >= _ALONE else None, pencil, weights, x, y.conj())
+    arithmetic = inner.arithmetic
     for _ in range(_FACTORISATIONS):
         if pencil.real and not np.imag(rate):
             rate, x, y = np.real(rate), x.real, y.real
-        last = arithmetic.iterate(weights.value, rate, x, y)
+        last = arithmetic.iterate(own.value, rate, x, y)
         x, y = last.vectors
         shares, settled = _judged(last, accuracy)
         if settled:
-            found = _quotient(pencil, weights, x, y, last.steps, shares, settled, bars)
+            found = _quotient(pencil, weights, x, y, last.steps, shares, settled, bars, (inner, own))
             return _twice(pencil, weights, found, bars) if last.uneven else found
-        rate = _rate(pencil, weights.value * arithmetic.brackets(x, y))
+        rate = _rate(inner, own.value * arithmetic.brackets(x, y))
         if not np.isfinite(rate):
             break
     raise ModeLost(f"inverse iteration near rate {complex(rate):.6g} did not settle")
@@ -93,16 +95,17 @@ def refine_many(pencil: Any, weights: Any, rate: np.ndarray | None, x: np.ndarra
     Without `bars` the rounding is left at 0: a rough look does not need it. Without a rate the quotient of the vectors
     is the guess.
     """
-    x, y, arithmetic = x.T, y.conj().T, pencil.arithmetic
+    inner, own, x, y = _inside(pencil.condensed, pencil, weights, x.T, y.conj().T)
+    arithmetic = inner.arithmetic
     if rate is None:
-        rate = _rate(pencil, weights.value * arithmetic.brackets(x, y))
+        rate = _rate(inner, own.value * arithmetic.brackets(x, y))
     if pencil.real and not np.any(np.imag(rate)):
         rate, x, y = rate.real, x.real, y.real
     x, y = (np.ascontiguousarray(vectors, np.result_type(vectors, rate)) for vectors in (x, y))
     steps, shares = (np.zeros_like(x), np.zeros_like(y)), np.zeros((2, len(rate)))
     settled, left = np.zeros(len(rate), bool), np.arange(len(rate))
     for _ in range(_ROUNDS):
-        last = arithmetic.iterate(weights.value[:, left], rate[left], x[:, left], y[:, left])
+        last = arithmetic.iterate(own.value[:, left], rate[left], x[:, left], y[:, left])
         parts, settled[left] = _judged(last, accuracy)
         for whole, part in zip((x, y, *steps, shares), (*last.vectors, *last.steps, parts), strict=True):
             whole[..., left] = part
@@ -110,8 +113,15 @@ def refine_many(pencil: Any, weights: Any, rate: np.ndarray | None, x: np.ndarra
         left = left[~settled[left] & ~last.uneven]
         if not len(left):
             break
-        rate = _rate(pencil, weights.value * arithmetic.brackets(x, y))
-    return _quotient(pencil, weights, x, y, steps, shares, settled, bars)
+        rate = _rate(inner, own.value * arithmetic.brackets(x, y))
+    return _quotient(pencil, weights, x, y, steps, shares, settled, bars, (inner, own))
+
+
+def _inside(condensed: Any, pencil: Any, weights: Any, x: np.ndarray, y: np.ndarray) -> tuple[Any, ...]:
+    """Where iterations take place, the pencil or what is `condensed` of it, with its weights and the vectors there."""
+    if condensed is None:
+        return pencil, weights, x, y
+    return condensed, condensed.weights(weights), *condensed.restricted(x, y)
 
 
 def _judged(last: "Iterated", accuracy: float) -> tuple[Any, ...]:
@@ -186,32 +196,49 @@ def _rate(pencil: Any, value: np.ndarray) -> Any:
 
 
 def _quotient(pencil: Any, weights: Any, x: np.ndarray, y: np.ndarray, steps: Any, shares: Any, settled: Any,
-              bars: bool) -> "Eigen":
+              bars: bool, inside: Any = None) -> "Eigen":
     """Rayleigh quotients of the pairs (y^H, x), (size, points) or of one (size,), with slope in k and errors.
 
-    `steps` are the last ones of both vectors, with the `shares` of them that steps to come would make. The slope is
-    s = y L' x / (y B x), where L' is the derivative of A - rate B in k at a fixed rate: a change of x by dx makes
-    ds = y (L' - s B) dx / (y B x), and one of y the same from the left. The rate does not change, to first order.
+    `steps` are the last ones of both vectors, with the `shares` of them that steps to come would make. They and the
+    vectors are those `inside`, of the pencil or of what is condensed of it, with its weights.
     """
-    arithmetic = pencil.arithmetic
-    brackets, squares = arithmetic.changes(x, y, *steps) if bars else (arithmetic.brackets(x, y)[None], None)
-    products = np.array((weights.value, weights.slope))[:, None] * brackets
-    of_value, of_slope = np.add.reduceat(products, pencil.layout.sides, axis=2)  # sums over the parts of A, of -B
-    norm = -of_value[0, 1]  # y B x
-    rate, size = of_value[0, 0] / norm, abs(norm)
-    slopes = (of_slope[:, 0] + rate * of_slope[:, 1]) / norm
-    power = pencil.powers(rate)
+    arithmetic, (inner, own), squares = pencil.arithmetic, inside or (pencil, weights), None
+    if inner is not pencil:
+        rate, _, _, change = _slopes(own, inner.changes(x, y, *steps if bars else ()), inner.sides)
+        x, y = inner.continued(weights.value * pencil.powers(rate), x, y)
+        brackets = arithmetic.brackets(x, y)[None]
+        rate, norm, slope, _ = _slopes(weights, brackets, pencil.layout.sides)
+        squares = pencil.stack.squares(y, x) if bars else None
+    else:
+        brackets, squares = arithmetic.changes(x, y, *steps) if bars else (arithmetic.brackets(x, y)[None], None)
+        rate, norm, slope, change = _slopes(weights, brackets, pencil.layout.sides)
+    power, size = pencil.powers(rate), abs(norm)
     y, weighted = y / norm, weights.value * power
     spread = _sum(weights.spread * abs(brackets[0] * power)) / size
-    if pencil.cuts:
+    if bars and pencil.cuts:
         spread += pencil.cut(weighted, y, x)
     scatter = left = rounding = np.zeros(norm.shape)
     if bars:
-        change = abs(slopes[1:] + slopes[0] * of_value[1:, 1] / norm)
         scatter, left = _sum(change), _sum(shares * change)
         variance = abs(weighted) ** 2 * (squares + abs(brackets[0]) ** 2)  # of entries, of weights common to a part
         rounding = _EPS * np.sqrt(_sum(variance)) / size
     tail = abs(arithmetic.beyond(weighted, x)).reshape(len(pencil.last), -1, *norm.shape)
     truncation = _sum(tail.sum(axis=1) * abs(y[pencil.last]).max(axis=1))
     right, adjoint = (np.ascontiguousarray(rows.T) for rows in (x, y.conj()))
-    return Eigen(rate, slopes[0], truncation, rounding, spread, scatter, left, right, adjoint, settled)
+    return Eigen(rate, slope, truncation, rounding, spread, scatter, left, right, adjoint, settled)
+
+
+def _slopes(weights: Any, brackets: np.ndarray, sides: np.ndarray) -> tuple[Any, ...]:
+    """The rate, y B x, the slope s and what steps of the vectors do to that, None without any.
+
+    `brackets` (1 or 3, parts, ...) are those of x and y, of dx and y, and of x and dy. The slope is
+    s = y L' x / (y B x), where L' is the derivative of A - rate B in k at a fixed rate: a change of x by dx makes
+    ds = y (L' - s B) dx / (y B x), and one of y the same from the left. The rate does not change, to first order.
+    """
+    products = np.array((weights.value, weights.slope))[:, None] * brackets
+    of_value, of_slope = np.add.reduceat(products, sides, axis=2)  # sums over the parts of A, of -B
+    norm = -of_value[0, 1]  # y B x
+    rate = of_value[0, 0] / norm
+    slopes = (of_slope[:, 0] + rate * of_slope[:, 1]) / norm
+    change = abs(slopes[1:] + slopes[0] * of_value[1:, 1] / norm) if len(slopes) > 1 else None
+    return rate, norm, slopes[0], change

@@ -23,7 +23,7 @@ class Lines:
     def __init__(self, part: np.ndarray, row: np.ndarray, column: np.ndarray, parts: int,
                  shape: tuple[int, ...]) -> None:
         key = part * shape[0] + (shape[0] - 1 - row)  # small coefficients first: sums lose less to rounding
-        self._order = np.argsort(key, kind="stable")
+        self._order = np.argsort(key, kind="stable").astype(np.int32)
         key = key[self._order]
         first = np.flatnonzero(np.diff(key, prepend=-1))
         self.part, self.row = key[first] // shape[0], shape[0] - 1 - key[first] % shape[0]
@@ -95,6 +95,10 @@ class Stack:
     @cached_property
     def _squares(self) -> Any:
         return with_data(self._matrix, square(self._matrix.data))
+
+    def full(self, weights: np.ndarray) -> np.ndarray:
+        """The sum of the parts times weights (parts,), (rows, columns)."""
+        return self.lines.to_rows(self.spread(weights)[:, None] * self._matrix.toarray())
 
     def times(self, x: np.ndarray) -> np.ndarray:
         """Products of every part with x: (lines, points), for the methods below."""

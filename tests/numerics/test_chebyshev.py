@@ -55,3 +55,13 @@ def test_coefficients_of_an_analytic_function_fall_geometrically():
     rho = 1.5 + np.sqrt(1.25)
     m = np.arange(1, 30)
     np.testing.assert_allclose(series[1:30], 2 / np.sqrt(1.25) * rho**-m.astype(float), rtol=1e-3)
+
+
+def test_a_series_at_points_whose_polynomials_are_kept():
+    s = np.linspace(0, 1, 23)
+    for length in (1, 5, 32, 33, 70):
+        series = np.random.default_rng(length).standard_normal(length) / np.arange(1, length + 1) ** 2
+        expected = np.polynomial.chebyshev.chebval(2 * s - 1, series)
+        np.testing.assert_allclose(chebyshev.at_points(s, series), expected, rtol=0, atol=1e-14)
+        with pytest.raises(AssertionError):
+            np.testing.assert_allclose(chebyshev.at_points(s, 1.01 * series), expected, rtol=0, atol=1e-14)

@@ -1,0 +1,289 @@
+"""A pencil without the unknowns that two equations of each layer give outright: half of them, and an eighth of the LU.
+
+Continuity and momentum across are solved for the slopes of w and n, and contain nothing else of them but w in the
+latter: coefficient j of either, times 2, is what row j - 1 of its equation says. With these unknowns E, the others R
+(v, t and the border) and
+
+    A - rate B  =  [ P  F ]  rows of E,    P = 2 + N,  N taking w to the rows of n,
+                   [ G  H ]  rows of R,
+
+the eigenvalues are those of S = H - G P^{-1} F: P^{-1} = 1/2 - N/4 is a polynomial in the symbols and in the rate. N
+has the rate, but what it multiplies, continuity, has none, nor has G: S is linear in it as well, a smaller pencil, with
+products of the parts as its parts. Vectors of S are continued to E by P x_E = -F x_R and y_E P = -y_R G.
+
+Where the blocks of layers are full this takes much less work; bands would fill.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from ..numerics.arithmetic import Arithmetic
+from ..numerics.blocks import Blocks
+from ..numerics.bordered import Bordered, Factors, ManyFactors
+from ..numerics.stack import Lines, Stack
+from .layer import FIELDS
+
+if TYPE_CHECKING:
+    from .pencil import Layout, Weights
+
+_GIVEN = tuple(FIELDS.index(name) for name in ("w", "n"))  # in this order: the equation of the second has the first
+_PIVOT = 2.0  # d phi_j / ds = 2 T_{j-1}
+_SWEEPS = len(_GIVEN)  # after which P is inverted
+
+Key = tuple[int, int, tuple[int, ...]]  # a group of rows, one of columns, and the parts whose product is the weight
+
+
+def condensable(layout: "Layout") -> bool:
+    """Whether the equations of a layout give w and n outright, and S is linear in the rate."""
+    structure = layout.structure
+    given = {name: number for number, name in enumerate(structure.unknowns[:structure.fields])
+             if number % len(FIELDS) in _GIVEN}
+    own = {number: name for name, number in given.items()}
+    return all(_outright(own[number], row.terms) if number in own else
+               not any("rate" in monomial and unknown.partition("@")[0] in given for unknown, monomial, _ in row.terms)
+               for number, row in enumerate(structure.rows))
+
+
+def _outright(field: str, terms: Any) -> bool:
+    """Whether an equation gives a field: its slope stands alone, as residuals have it, and the field nowhere else."""
+    slopes = [(unknown, monomial, tuple(support)) for unknown, monomial, support in terms if unknown.endswith("'")]
+    return slopes == [(f"{field}'", (), (0,))] and field not in (unknown for unknown, *_ in terms)
+
+
+class Groups:
+    """The rows and columns of a layout by field: a group for each, of those in its interior, and the border behind.
+
+    `row`, `column` (size,) are the groups of all rows and columns, `row_place`, `column_place` (size,) their places in
+    them; `sizes` (groups,) are those of the groups, and `given` (groups,) tells which are E.
+    """
+
+    def __init__(self, layout: "Layout") -> None:
+        structure = layout.structure
+        border = structure.fields
+        numbers = np.arange(border + 1)
+        self.given = np.isin(numbers % len(FIELDS), _GIVEN) & (numbers < border)
+        self.sizes = np.full(border + 1, layout.size - layout.interior)
+        self.row, self.column = (np.full(layout.size, border) for _ in range(2))
+        self.row_place, self.column_place = (np.maximum(np.arange(layout.size) - layout.interior, 0) for _ in range(2))
+        for number in range(border):
+            for group, place, places in ((self.row, self.row_place, layout.rows[structure.rows[number].name]),
+                                         (self.column, self.column_place, layout.columns[structure.unknowns[number]])):
+                inside = places[places < layout.interior]
+                group[inside], place[inside] = number, np.arange(len(inside))
+            self.sizes[number] = len(inside)
+
+    def sorted(self, group: np.ndarray, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The rows (or columns) of R, and those of E, group by group."""
+        order = np.lexsort((place, group))
+        given = self.given[group[order]]
+        return order[~given], order[given]
+
+
+class Arrangement:
+    """What the condensed pencils of one layout have in common: where entries lie before.
+
+    `kept_rows`, `kept_columns` (kept,) and `given_rows`, `given_columns` (given,) are the places of R and E in vectors;
+    `rows` and `columns` tell where the entries in the rows, and in the columns, of E lie: those are `in_rows` and
+    `in_columns` of the entries of the layout.
+    """
+
+    def __init__(self, layout: "Layout") -> None:
+        self.structure, self.size = layout.structure, layout.size
+        self.groups = groups = Groups(layout)
+        part, row, column = layout.entries()
+        count = len(self.structure.parts)
+        self.kept_rows, self.given_rows = groups.sorted(groups.row, groups.row_place)
+        self.kept_columns, self.given_columns = groups.sorted(groups.column, groups.column_place)
+        self.in_rows = np.flatnonzero(groups.given[groups.row[row]])
+        self.in_columns = np.flatnonzero(groups.given[groups.column[column]])
+        where = np.zeros(layout.size, int)
+        where[self.given_rows] = np.arange(len(self.given_rows))
+        self.rows = Lines(part[self.in_rows], where[row[self.in_rows]], column[self.in_rows], count,
+                          (len(self.given_rows), layout.size))
+        where[self.given_columns] = np.arange(len(self.given_columns))
+        self.columns = Lines(part[self.in_columns], row[self.in_columns], where[column[self.in_columns]], count,
+                             (layout.size, len(self.given_columns)))
+        self._place(part, row, column)
+        self._reduced: Reduced | None = None
+
+    def _place(self, part: np.ndarray, row: np.ndarray, column: np.ndarray) -> None:
+        """Full blocks for every pair of groups and part: where they begin, and which entries add to them."""
+        groups, count = self.groups, len(self.structure.parts)
+        number = len(groups.sizes)
+        keys, block = np.unique((groups.row[row] * number + groups.column[column]) * count + part, return_inverse=True)
+        pairs, parts = keys // count, keys % count
+        shapes = groups.sizes[np.array([pairs // number, pairs % number])]
+        starts = np.concatenate(([0], np.cumsum(shapes.prod(axis=0))))
+        target = starts[block] + groups.row_place[row] * shapes[1][block] + groups.column_place[column]
+        self._sum = csr_array((np.ones(len(target)), (target, np.arange(len(target)))), (starts[-1], len(target)))
+        self._blocks = [((pair // number, pair % number, (one,)), slice(first, last), shape)
+                        for pair, one, first, last, shape in zip(
+                            *(array.tolist() for array in (pairs, parts, starts[:-1], starts[1:], shapes.T)),
+                            strict=True)]
+
+    def blocks(self, value: np.ndarray) -> Iterator[tuple[Key, np.ndarray]]:
+        """Yield the blocks of a pencil whose entries in the layout have these values."""
+        flat = self._sum @ value
+        yield from ((key, flat[where].reshape(shape)) for key, where, shape in self._blocks)
+
+    def reduced(self, keys: list[Key]) -> "Reduced":
+        """Where the entries of S lie, blocks with these keys: the same for all pencils."""
+        if self._reduced is None or self._reduced.keys != keys:
+            self._reduced = Reduced(self, keys)
+        return self._reduced
+
+
+class Reduced:
+    """Where the entries of condensed pencils lie, blocks with these `keys` one after the other, row by row.
+
+    `factors` (parts, 3) are the parts of the pencil whose product is a part of S, a number beyond them standing for 1;
+    parts from `first_b` on have the rate. `stack`, `places` and `b` tell where the entries of S, of its bordered matrix
+    and those with the rate, `carrying`, lie.
+    """
+
+    def __init__(self, arrangement: Arrangement, keys: list[Key]) -> None:
+        self.keys, structure, groups = keys, arrangement.structure, arrangement.groups
+        names = {product: tuple(sorted(name for one in product for name in structure.parts[one]))
+                 for *_, product in keys}
+        parts = sorted(set(names.values()), key=lambda names: ("rate" in names, names))
+        self.first_b = sum("rate" not in one for one in parts)
+        products = [next(product for product, name in names.items() if name == one) for one in parts]
+        most = max(map(len, products))
+        self.factors = np.array([[*one, *[len(structure.parts)] * (most - len(one))] for one in products])
+        sizes = np.where(groups.given, 0, groups.sizes)
+        starts = np.cumsum(sizes) - sizes
+        entries = []
+        for row, column, product in keys:
+            inside = np.indices((sizes[row], sizes[column])).reshape(2, -1) + starts[[row, column], None]
+            entries.append((np.full(inside.shape[1], parts.index(names[product])), *inside))
+        part, rows, columns = (np.concatenate(one) for one in zip(*entries, strict=True))
+        size, border = len(arrangement.kept_rows), int(sizes[-1])
+        self.stack = Lines(part, rows, columns, len(parts), (size, size))
+        self.places = Blocks(part, rows, columns, len(parts), size - border, border)
+        self.carrying = np.flatnonzero(part >= self.first_b)
+        self.b = Lines(part[self.carrying], rows[self.carrying], columns[self.carrying], len(parts), (size, size))
+
+
+class Condensed:
+    """The condensed form S of a pencil whose entries in the layout have these values.
+
+    It has the `stack`, `powers`, `factors`, `b_products` and `arithmetic` of a pencil, for weights of its own parts;
+    `sides` are the first without and the first with the rate.
+    """
+
+    def __init__(self, arrangement: Arrangement, value: np.ndarray) -> None:
+        self._arrangement = arrangement
+        blocks = _condensed(arrangement, value)
+        self._reduced = arrangement.reduced(list(blocks))
+        self.first_b = self._reduced.first_b
+        self.sides = np.array((0, self.first_b))
+        self._value = np.concatenate([block.ravel() for block in blocks.values()])
+        self._rows = Stack(arrangement.rows, value[arrangement.in_rows])
+        self._columns = Stack(arrangement.columns, value[arrangement.in_columns])
+
+    @cached_property
+    def stack(self) -> Stack:
+        return Stack(self._reduced.stack, self._value)
+
+    @cached_property
+    def _bordered(self) -> Bordered:
+        return Bordered(self._reduced.places, self._value)
+
+    @cached_property
+    def _b(self) -> Stack:
+        return Stack(self._reduced.b, -self._value[self._reduced.carrying])
+
+    @property
+    def arithmetic(self) -> Arithmetic:
+        return Arithmetic(self)  # nothing is kept: what refers to itself would outlive its use
+
+    def changes(self, x: np.ndarray, y: np.ndarray, *steps: np.ndarray) -> np.ndarray:
+        """y^T part x for every part, and with `steps` dx and dy of dx and y, and x and dy: (1 or 3, parts, ...)."""
+        products, brackets = self.stack.times(x), self.stack.brackets
+        pairs = [(y, products)]
+        if steps:
+            pairs += [(y, self.stack.times(steps[0])), (steps[1], products)]
+        return np.array([brackets(*pair) for pair in pairs])
+
+    def weights(self, weights: "Weights") -> "Weights":
+        """The `Weights` of its parts for those of the parts of the pencil, without their spread."""
+        factors, one = self._reduced.factors, np.ones((1, *weights.value.shape[1:]))
+        value = np.concatenate((weights.value, one))[factors].prod(axis=1)
+        slopes = np.concatenate((weights.slope / weights.value, 0 * one))[factors].sum(axis=1)
+        return replace(weights, value=value, slope=value * slopes, spread=0 * value)
+
+    def powers(self, rate: Any) -> np.ndarray:
+        """Factor of every part: 1, or the rate; (parts,) then the shape of rate."""
+        powers = np.ones((len(self._reduced.factors), *np.shape(rate)), np.result_type(rate, float))
+        powers[self.first_b:] = rate
+        return powers
+
+    def factors(self, weights: np.ndarray, rate: Any) -> Any:
+        """Return LU factors for weights (parts,), or (parts, points) and rates (points,)."""
+        kind = ManyFactors if np.ndim(rate) else Factors
+        return kind(self._bordered, weights * self.powers(rate))
+
+    def b_products(self, weights: np.ndarray) -> Any:
+        """Return the products of what the rate multiplies with vectors from either side, as functions."""
+        return self._b.summed(weights)
+
+    def restricted(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The parts R of vectors x and y (without conjugation)."""
+        return x[self._arrangement.kept_columns], y[self._arrangement.kept_rows]
+
+    def continued(self, weights: np.ndarray, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Vectors of the pencil from x_R and y_R, for the weights of its parts times powers of the rate."""
+        arrangement, rows, columns = self._arrangement, self._rows, self._columns
+        full_x, full_y = (np.zeros((arrangement.size, *x.shape[1:]), vector.dtype) for vector in (x, y))
+        full_x[arrangement.kept_columns], full_y[arrangement.kept_rows] = x, y
+        in_rows, in_columns = rows.spread(weights), columns.spread(weights)
+        for _ in range(_SWEEPS):
+            full_x[arrangement.given_columns] -= rows.total(in_rows, rows.times(full_x)) / _PIVOT
+            full_y[arrangement.given_rows] -= columns.total_left(in_columns, full_y) / _PIVOT
+        return full_x, full_y
+
+
+def _condensed(arrangement: Arrangement, value: np.ndarray) -> dict[Key, np.ndarray]:
+    """The blocks of S."""
+    given = arrangement.groups.given
+    found: dict[Key, np.ndarray] = {}
+    says: dict[int, list[Any]] = {}  # the rows of E: blocks beside the slopes
+    rest = []
+    for (row, column, product), block in arrangement.blocks(value):
+        if given[row] and row != column:
+            says.setdefault(row, []).append((column, product, block / _PIVOT))
+        elif not given[row]:
+            rest.append((row, column, product, block))
+    solved = {row: _solved(row, says, given) for row in says}
+    for row, column, product, block in rest:
+        if not given[column]:
+            _add(found, (row, column, product), block)
+            continue
+        for (end, other), one in solved[column].items():
+            _add(found, (row, end, _times(product, other)), -(block @ one))
+    return found
+
+
+def _solved(row: int, says: dict[int, list[Any]], given: np.ndarray) -> dict[Any, np.ndarray]:
+    """P^{-1} F in the rows of a group of E: {(group of columns, parts): block}."""
+    found: dict[Any, np.ndarray] = {}
+    for column, product, block in says[row]:
+        if not given[column]:
+            _add(found, (column, product), block)
+            continue
+        for (end, other), one in _solved(column, says, given).items():
+            _add(found, (end, _times(product, other)), -(block @ one))
+    return found
+
+
+def _times(one: tuple[int, ...], other: tuple[int, ...]) -> tuple[int, ...]:
+    return tuple(sorted((*one, *other)))
+
+
+def _add(total: dict[Any, np.ndarray], key: Any, block: np.ndarray) -> None:
+    total[key] = total[key] + block if key in total else block

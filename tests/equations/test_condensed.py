@@ -1,0 +1,80 @@
+"""A pencil without w and n has the eigenvalues and the vectors of the whole one, and where it is not formed."""
+
+import numpy as np
+import pytest
+
+from stability import dispersion, spectrum
+from stability.equations.condensed import condensable
+from stability.equations.pencil import Weights
+from stability.flows import Dune, Plate, Poiseuille, Regularised, Saturating
+from stability.modes.solver import Solver
+
+FLOWS = {"creeping": Dune(law=Regularised()), "yielding": Dune(shields=1.5, law=Saturating()),
+         "with a fluid": Dune(shields=1.5, law=Saturating(), fluid="layer"), "plate": Plate(law=Regularised())}
+
+
+def case(flow, k=1.3, degree=20):
+    """A solver, its pencil, weights and a mode at this degree."""
+    solver = Solver(flow)
+    near = dispersion(flow, k).modes[0] if flow.has_surface_mode() else spectrum(flow, k, 1, strict=False).modes[0]
+    mode = solver.solve(k, near.rate, (near.degree, near.x, near.y), degree, glance=True)
+    return solver.pencil(degree), solver.weights(k), mode
+
+
+@pytest.mark.parametrize("flow", FLOWS.values(), ids=FLOWS)
+def test_eigenvalue_and_vectors(flow):
+    pencil, weights, mode = case(flow)
+    condensed, x, y = pencil.condensed, mode.x, mode.y.conj()
+    assert len(condensed.restricted(x, y)[0]) < 0.6 * pencil.size
+    again = condensed.continued(weights.value * pencil.powers(mode.rate), *condensed.restricted(x, y))
+    for found, expected in zip(again, (x, y), strict=True):
+        np.testing.assert_allclose(found, expected, atol=1e-11 * np.abs(expected).max())
+    own, kept = condensed.weights(weights), condensed.restricted(x, y)
+    b, _ = condensed.b_products(own.value)
+    guess = mode.rate * 1.001
+    ahead = condensed.factors(own.value, guess).solve(b(kept[0]))
+    pivot = np.abs(kept[0]).argmax()
+    np.testing.assert_allclose(guess + kept[0][pivot] / ahead[pivot], mode.rate, rtol=1e-10)
+    off = Weights(own.value * np.where(np.arange(len(own.value)) == 2, 1.01, 1.0), own.slope, own.spread)
+    ahead = condensed.factors(off.value, guess).solve(b(kept[0]))
+    assert abs(guess + kept[0][pivot] / ahead[pivot] - mode.rate) > 1e-6 * abs(mode.rate)
+
+
+def test_slopes_of_its_weights():
+    """Those of products of the parts, against differences."""
+    solver = Solver(FLOWS["yielding"])
+    condensed, step = solver.pencil(20).condensed, 1e-5
+    low, here, high = (condensed.weights(solver.weights(k)) for k in (1.3 - step, 1.3, 1.3 + step))
+    np.testing.assert_allclose((high.value - low.value) / (2 * step), here.slope, rtol=1e-8)
+
+
+def test_many_points_are_those_of_each():
+    """Many wavenumbers at once are refined in condensed form, one alone in full."""
+    flow = FLOWS["creeping"]
+    k = np.geomspace(0.5, 0.8, 9)
+    many = dispersion(flow, k)
+    for mode in many.modes[1:-1:3]:
+        alone = Solver(flow).solve(mode.k, mode.rate * 1.0001, (mode.degree, mode.x, mode.y))
+        assert abs(alone.sigma - mode.sigma) <= alone.error + mode.error
+        assert abs(alone.slope - mode.slope) <= 1e-9 * abs(mode.slope)
+        assert 0.2 < mode.error / alone.error < 5
+
+
+def test_where_it_is_not_formed():
+    """Bands stay bands; an equation with another slope, and a condition with the rate times w, is none of this kind."""
+    assert Solver(Poiseuille()).pencil(48).condensed is None
+    layout = Solver(FLOWS["yielding"]).pencil(20).layout
+    assert condensable(layout)
+    rows = layout.structure.rows
+    for number, terms in ((1, (*rows[1].terms, ("bed.w", ("k",), (0,)))), (1, (*rows[1].terms, ("bed.v'", (), (0,)))),
+                          (len(rows) - 1, (*rows[-1].terms, ("bed.w@1", ("rate",), (0,))))):
+        structure = changed(layout.structure, number, terms)
+        assert not condensable(type("Other", (), {"structure": structure}))
+
+
+def changed(structure, number, terms):
+    from dataclasses import replace
+
+    rows = list(structure.rows)
+    rows[number] = replace(rows[number], terms=terms)
+    return replace(structure, rows=tuple(rows))
