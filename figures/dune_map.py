@@ -4,7 +4,7 @@ Unbounded fluid, b = 1. Above mu1 = 0.4: k_max jumps (red) from the long viscous
 as the bed is deep. Every bed is ill posed (C > 0) next to its yield surface, below the dashed line throughout, but no
 internal mode is ahead of the surface mode at k_max. Below mu1 = 0.7: where cells are cross-hatched one is, so that the
 dunes computed would not be seen; the short waves on top belong to a second ill-posed strip, below the surface, and not
-all of them are resolved. Run time: about 2.5 minutes on one core, 8 s with --fast.
+all of them are resolved.
 """
 
 import numpy as np

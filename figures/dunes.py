@@ -4,7 +4,6 @@ Left an unbounded fluid (boundary layer), right a fluid under a lid (shallow vis
 growth rate, and the fastest growing wavenumber against Re. Dashed: the long-wave expansions to the first term of
 growth, k^{4/3} (4.81), (4.82) on the left and A k^2 (4.84), (4.85) on the right, both derived by `asymptotics`.
 The thesis does not print its parameters: these are the defaults (shields 2, mu1 0.4, b 1, Re 10) and depth 2.
-Run time: about 10 s.
 """
 
 from dataclasses import replace

@@ -3,8 +3,7 @@
 Shields ratios 1.2 and 1.5, mu1 = 0.4: linear with b = 1; saturating with mu2 = 0.8, I0 = 1, which has the same slope
 mu1 b at I = 0; the regularised law with the same numbers, whose upper branch is that law (and mu_inf = 0.05).
 Wavenumber of the fastest surface mode and its growth rate. Close to yield (4.48) costs little: at shields 1.2 the
-saturating law has k_max larger by up to 6.5 % and growth by 17 to 23 %; at 1.5 by 15 to 55 % and 72 to 126 %. Run time:
-about 10 s on one core, 4 s with --fast.
+saturating law has k_max larger by up to 6.5 % and growth by 17 to 23 %; at 1.5 by 15 to 55 % and 72 to 126 %.
 """
 
 import numpy as np

@@ -4,7 +4,7 @@ Contours of epsilon = 1 / |resolvent| in the plane of the wave speed c: equation
 eigenvalue anywhere inside. Dots: eigenvalues, with condition numbers up to 1e7 where the branches meet, which is
 why double precision keeps 14 digits of the unstable mode and 8 of those. Cf. Reddy, Schmid & Henningson (1993),
 SIAM J. Appl. Math. 53, 15. The resolvent is computed from the left and right energies of the pencil, compressed to
-the part of the spectrum drawn. Run time: about 10 s.
+the part of the spectrum drawn.
 """
 
 import numpy as np

@@ -4,7 +4,7 @@ Left: the long-wave threshold F_c^2 = (4/25)(4 - 6 t^2 + 3 e0 t), met to 12 digi
 lower, waves of finite length grow first (below 22 degrees, next to the ill-posed slopes, ever shorter ones).
 Depth-averaged theory (Gray & Edwards 2014) has F_c = 2/3 at every slope.
 Right: neutral wavenumbers, with the depth-averaged cutoff (k h)^2 = (9/4) e0 (3F - 2)/t; cf. Forterre (2006),
-figure 4.1 (b, c) of Cawthorn's thesis. Glass beads: mu1 = tan 20.9, mu2 = tan 32.76 deg. Run time: about 10 s.
+figure 4.1 (b, c) of Cawthorn's thesis. Glass beads: mu1 = tan 20.9, mu2 = tan 32.76 deg.
 """
 
 import numpy as np

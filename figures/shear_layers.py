@@ -3,7 +3,7 @@
 The thesis's figures 2.3(b) (annular shear, rotation rate against thickness; lambda = 1.4), 2.4(c) (chute, flux), 2.8(b)
 (profiles under a dragged plate; lambda = 1.6) and 2.9(a) (its velocity). Saturating friction mu1 = 0.4, mu2 = lambda
 mu1, velocities in units of I0 as in the thesis. Leading terms (2.11), (2.22), (2.38) dashed; dotted the sums of three
-orders, which `asymptotics` derives from the steady equations. Run time: about 6 s on one core.
+orders, which `asymptotics` derives from the steady equations.
 """
 
 import numpy as np

@@ -1,7 +1,7 @@
 """Growth rate of longitudinal vortices: the thesis's figure 4.3 (Fr2 = 0.1, slope 30 degrees).
 
 The curve decays for every k, touches its long-wave limit -2 k^2 / (5 tan slope) as k -> 0, and has its minimum
-near k = 2.3 ("typically near k = 2" in the thesis). Run time: under a second.
+near k = 2.3 ("typically near k = 2" in the thesis).
 """
 
 import numpy as np

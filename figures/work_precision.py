@@ -9,8 +9,7 @@ asks for a single eigenvalue of a flow that nothing is known of (full curves), a
 loop over 21 values of a parameter (dotted curves, time for each): this package by the tolerance asked for, solve_bvp by
 its residual, even modes by a Galerkin script, and the packages dmsuite and Dedalus 3 (in the loop by its sparse solver,
 next to the eigenvalue before) where they are installed, else as they were measured last (columns machine and
-versions). Run time: about 5 minutes on one core, 30 s with --fast; ratios of times are worth
-more than times.
+versions).
 """
 
 import csv

@@ -10,6 +10,7 @@ wavenumber that is the flow's own.
 
 from collections.abc import Iterator
 from math import copysign, log
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -47,8 +48,9 @@ class Branch:
     def __init__(self, solver: "Solver", start: "Mode", rough: "Solver | None" = None, seen: Any = (),
                  final: bool = False) -> None:
         self.solver, self.start, self._seen, self._final = solver, start, seen, final
-        rough = rough or solver.rough(_ROUGH)
-        self._walks = {side: Walk(rough, start, solver) for side in (1, -1)}
+        self._rough = rough or solver.rough(_ROUGH)
+        self._walks = {side: Walk(self._rough, start, solver) for side in (1, -1)}
+        self._answers: dict[float, Mode] = {}
         self.lost = {}
 
     @property
@@ -75,8 +77,8 @@ class Branch:
 
     @property
     def known(self) -> "dict[float, Mode]":
-        """{k: mode} of all that was computed on the way, roughly."""
-        return {mode.k: mode for part in (self._seen, *self.segments) for mode in part}
+        """{k: mode} of all that was computed on the way, roughly, and of the last answers to few wavenumbers."""
+        return {mode.k: mode for part in (self._answers.values(), self._seen, *self.segments) for mode in part}
 
     def reach(self, k: float) -> bool:
         """Walk until k lies behind; return whether it does."""
@@ -108,6 +110,8 @@ class Branch:
                 lost[k] = str(mode)
             else:
                 found[k] = mode
+        if len(found) <= _FEW:
+            self._answers = found
         return found, lost
 
     def _side(self, k: float) -> int:
@@ -123,17 +127,28 @@ class Branch:
             return near
         try:
             if len(nodes) > 1 and k != near.k:
-                degree = self.solver.next_degree(known) if known else 0
-                degree = max(degree, *(self.solver.likely_degree(node) for node in nodes[index: index + 2]))
-                own = max(node.degree for node in nodes[index: index + 2])
-                (rate,), (x,), (y,) = interpolated(self.solver, nodes, index, np.log([k]), own)
-                mode = self._solved(k, rate, (own, x, y), degree)
+                rate = _hermite(nodes, index, log(k))
+                seen = self._rough.foreseen(k, rate, _DRIFT)
+                guess = seen or self._interpolated(nodes, index, k, rate)
+                degree = None if seen else self._likely_degree(nodes[index: index + 2], known)
+                mode = self._solved(k, guess.rate, (guess.degree, guess.x, guess.y), degree)
                 if mode and _near(mode, rate, near) and abs(self.solver.overlap(near, mode) - 1) < _ASTRAY:
                     return mode
             mode = self._solved(near.k, near.rate, (near.degree, near.x, near.y)) or near
             return mode if k == near.k else Walk(self.solver, mode).to(k)
         except ModeLost as reason:
             return reason
+
+    def _interpolated(self, nodes: "list[Mode]", index: int, k: float, rate: complex) -> Any:
+        """A rate with degree and vectors to begin with at k."""
+        degree = max(node.degree for node in nodes[index: index + 2])
+        _, (x,), (y,) = interpolated(self.solver, nodes, index, np.log([k]), degree)
+        return SimpleNamespace(rate=rate, degree=degree, x=x, y=y)
+
+    def _likely_degree(self, nodes: "list[Mode]", known: "Mode | None") -> int:
+        """The degree to try first between nodes."""
+        degrees = [self.solver.next_degree(known)] if known else []
+        return max([*degrees, *(self.solver.likely_degree(node) for node in nodes)])
 
     def _solved(self, k: float, rate: complex, vectors: tuple[int, np.ndarray, np.ndarray],
                 degree: int | None = None) -> "Mode | None":
@@ -292,15 +307,19 @@ def _intervals(segments: "list[list[Mode]]", wavenumbers: list[float]) -> list[t
     return places
 
 
-def interpolated(solver: "Solver", nodes: "list[Mode]", index: int, t: np.ndarray,
-                 degree: int) -> tuple[np.ndarray, ...]:
-    """Rates (cubic, values and slopes of two nodes) and vectors (cubic, four nodes) at log k = t (points,)."""
+def _hermite(nodes: "list[Mode]", index: int, t: Any) -> Any:
+    """The cubic through rates and slopes of a node and the next one at log k = t, a number or (points,)."""
     here, there = nodes[index], nodes[index + 1]
     h = log(there.k / here.k)
     u = (t - log(here.k)) / h
     rise = there.rate - here.rate
     a, b = h * here.k * here.rate_slope - rise, rise - h * there.k * there.rate_slope
-    rates = here.rate + u * rise + u * (1 - u) * (a * (1 - u) + b * u)
+    return here.rate + u * rise + u * (1 - u) * (a * (1 - u) + b * u)
+
+
+def interpolated(solver: "Solver", nodes: "list[Mode]", index: int, t: np.ndarray,
+                 degree: int) -> tuple[np.ndarray, ...]:
+    """Rates (cubic, values and slopes of two nodes) and vectors (cubic, four nodes) at log k = t (points,)."""
     first = min(max(index - 1, 0), max(len(nodes) - 4, 0))
     used = nodes[first: first + 4]
     times = np.log([node.k for node in used])
@@ -308,7 +327,7 @@ def interpolated(solver: "Solver", nodes: "list[Mode]", index: int, t: np.ndarra
     ratios[np.diag_indices(len(used))] = 1.0
     weights = ratios.prod(axis=1)
     vectors = [transfer(solver, (node.degree, node.x, node.y), degree) for node in used]
-    return rates, *(_blend(weights, rows, index - first) for rows in zip(*vectors, strict=True))
+    return _hermite(nodes, index, t), *(_blend(weights, rows, index - first) for rows in zip(*vectors, strict=True))
 
 
 def _blend(weights: np.ndarray, vectors: tuple[Any, ...], reference: int) -> np.ndarray:

@@ -77,7 +77,7 @@ def _nearest(flow: "Flow", *others: Any) -> "Branch | None":
 
 def _up_to(k: float, known: "dict[float, Mode]") -> "dict[float, Mode]":
     """What is known up to the first wavenumber beyond k."""
-    beyond = min((other for other in known if other >= k), default=inf)
+    beyond = min((other for other in known if other > k), default=inf)
     return {other: mode for other, mode in known.items() if other <= beyond}
 
 

@@ -10,6 +10,7 @@ from contextlib import suppress
 from hashlib import blake2b
 from pathlib import Path
 from typing import Any
+from weakref import WeakSet
 
 try:
     import fcntl
@@ -18,6 +19,7 @@ except ImportError:  # no such lock on this system
 
 from ..errors import ParameterError
 
+_open: "WeakSet[Journal]" = WeakSet()
 _CHECKSUM = 8  # bytes: damage passes by chance once in 2^64
 _DELETE = "give another file, or delete it to compute the map anew"
 
@@ -50,6 +52,7 @@ class Journal:
         except BaseException:
             self._file.close()
             raise
+        _open.add(self)
 
     def __enter__(self) -> "Journal":
         return self
@@ -136,6 +139,16 @@ class Journal:
     def _unwritable(self, reason: Any) -> Any:
         kept = "; what is done is kept, the same command resumes" if self.done else ""
         return ParameterError(f"cannot write {str(self.path)!r}: {os.strerror(reason.errno)}{kept}")
+
+
+def _let_go() -> None:
+    """In a forked process: its copies of the files would keep them locked when their owner is gone."""
+    for journal in _open:
+        journal._file.close()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_let_go)
 
 
 def _line(checked: bytes, content: bytes) -> bytes:

@@ -202,8 +202,9 @@ def parameter_map(flow: "Flow", over: "Mapping[str, ArrayLike]", quantity: str |
     return carry_out(request, executor=executor, workers=workers, journal=journal, report=report)
 
 
-def carry_out(request: Any, *, executor: Any = None, workers: Any = 1, journal: Any = None, report: Any = None) -> Any:
-    """Return the `Map` of a request; see `parameter_map`."""
+def carry_out(request: Any, *, executor: Any = None, workers: Any = 1, journal: Any = None, report: Any = None,
+              may_fork: bool = False) -> Any:
+    """Return the `Map` of a request; see `parameter_map`. Workers are forked from this process if they may."""
     workers = _check_means(executor, workers, journal)
     pieces, report = request.pieces(), report or (lambda done, total: None)
     shapes = [(piece.points, len(request.results)) for piece in pieces]
@@ -212,7 +213,7 @@ def carry_out(request: Any, *, executor: Any = None, workers: Any = 1, journal: 
         left = [piece for piece in pieces if piece.index not in done]
         count = request.size - sum(piece.points for piece in left)
         report(count, request.size)
-        with closing(compute_all(left, executor, workers)) as finished:
+        with closing(compute_all(left, executor, workers, may_fork)) as finished:
             for piece, rows in finished:
                 if kept:
                     kept.add(piece.index, rows)

@@ -1,4 +1,8 @@
-"""Worker processes of our own: they leave Ctrl-C to the parent, and end with it however it ends."""
+"""Worker processes of our own: they leave Ctrl-C to the parent, and end with it however it ends.
+
+A fresh process imports everything anew. One that is forked from this one has it all at once, but only a process of a
+single thread can be forked safely: that of the command, which begins `without_threads`, is one.
+"""
 
 import os
 import signal
@@ -14,6 +18,7 @@ from threadpoolctl import threadpool_limits
 
 from ..errors import ParameterError, WorkersLost
 
+_THREADS = "OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"
 GUARD = 'a script needs `if __name__ == "__main__":` around what it does, and cannot come from standard input'
 
 
@@ -22,18 +27,35 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-@contextmanager
-def processes(workers: int) -> Iterator[Any]:
-    """Yield a pool of `workers` fresh processes; whatever they still do at the end of the block is dropped.
+def without_threads() -> None:
+    """Have BLAS start no threads when it is imported: it is not to use any, and they forbid to fork."""
+    if "numpy" not in sys.modules:
+        for name in _THREADS:
+            os.environ[name] = "1"
 
+
+def _alone() -> bool:
+    """Whether this process has a single thread, those of libraries counted, as far as the system tells."""
+    try:
+        return len(os.listdir("/proc/self/task")) == 1
+    except OSError:
+        return False
+
+
+@contextmanager
+def processes(workers: int, may_fork: bool) -> Iterator[Any]:
+    """Yield a pool of `workers` processes; whatever they still do at the end of the block is dropped.
+
+    They are fresh ones unless this process `may_fork` and can.
     Each holds one end of a pipe whose other end is ours alone. When that closes, because the block ends or because
     this process was killed, they end at once. Raises WorkersLost at the end of a block in which none of them began.
     """
-    if getattr(sys.modules["__main__"], "__file__", None) == "<stdin>":
+    forked = may_fork and _alone()
+    if not forked and getattr(sys.modules["__main__"], "__file__", None) == "<stdin>":
         raise ParameterError(f"workers: each process runs the script anew: {GUARD}")
-    context = get_context("spawn")  # a fork would copy the other end of the pipe, and the threads of BLAS
+    context = get_context("fork" if forked else "spawn")
     theirs, ours = context.Pipe(duplex=False)
-    pool, first = ProcessPoolExecutor(workers, context, _begin, (theirs,)), []
+    pool, first = ProcessPoolExecutor(workers, context, _begin, (theirs, ours if forked else None)), []
     try:
         with _deaf(), suppress(BrokenExecutor):
             for _ in range(workers):
@@ -60,7 +82,9 @@ def _deaf() -> Iterator[Any]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _begin(lifeline: Any) -> None:
+def _begin(lifeline: Any, other_end: Any) -> None:
+    if other_end is not None:
+        other_end.close()  # a copy, which would keep the pipe open when that of the parent is gone
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with, args=(lifeline,), daemon=True).start()
     threadpool_limits(1, user_api="blas")

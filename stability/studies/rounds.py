@@ -14,13 +14,13 @@ if TYPE_CHECKING:
 _ROUNDS = 3  # in a row without a finished piece: then the executor is given up
 
 
-def compute_all(pieces: Any, executor: Any, workers: Any) -> Any:
+def compute_all(pieces: Any, executor: Any, workers: Any, may_fork: bool) -> Any:
     """Yield (piece, rows) as pieces finish."""
     workers = min(workers, len(pieces))
     if executor is not None:
         return _in_rounds(pieces, lambda: _Lent(executor))
     if workers > 1:
-        return _in_rounds(pieces, lambda: processes(workers))
+        return _in_rounds(pieces, lambda: processes(workers, may_fork))
     return ((piece, compute(piece)) for piece in pieces)
 
 

@@ -192,7 +192,7 @@ def _dying_pool():
 
 
 def test_workers_that_keep_dying_are_given_up(monkeypatch):
-    monkeypatch.setattr(rounds, "processes", lambda workers: _dying_pool())
+    monkeypatch.setattr(rounds, "processes", lambda workers, may_fork: _dying_pool())
     with pytest.raises(WorkersLost, match="ended 3 times before they finished anything: a script needs"):
         parameter_map(flows.Dune(), SMALL, workers=2)
 
@@ -219,6 +219,47 @@ def test_a_script_from_standard_input_is_refused_before_workers_start():
     line = f"stability.errors.ParameterError: workers: each process runs the script anew: {GUARD}\n"
     assert done.stderr.endswith(line)
     assert done.stderr.count("Traceback") == 1
+
+
+FORKED = """
+from stability.studies.pool import processes, without_threads
+without_threads()
+import fcntl, os, threading
+import scipy.linalg
+from stability.studies.journal import Journal
+
+def locked():
+    with open("journal", "rb") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return True
+
+with Journal("journal", {}) as journal, processes(2, True) as pool:
+    print(pool.submit(os.getppid).result() == os.getpid(), locked())
+    journal._file.close()
+    print(locked())
+stop = threading.Event()
+threading.Thread(target=stop.wait).start()
+try:
+    with processes(2, True):
+        pass
+except ValueError as reason:
+    print(reason)
+stop.set()
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only there are threads counted")
+def test_workers_are_forked_from_a_process_of_one_thread_and_hold_none_of_its_locks(tmp_path):
+    """A script from standard input cannot start fresh processes."""
+    for may_fork, said in (("True", ["True True", "None"]), ("False", [])):
+        script = FORKED.replace("processes(2, True) as", f"processes(2, {may_fork}) as")
+        done = subprocess.run([sys.executable, "-"], input=script, capture_output=True, text=True, timeout=60,
+                              cwd=tmp_path)
+        refusal = f"workers: each process runs the script anew: {GUARD}"
+        assert done.stdout.splitlines() == [*said, refusal][:len(said) and 3]
+        assert (refusal in done.stderr) == (not said)
 
 
 def test_a_broken_executor_of_somebody_else_is_reported():
@@ -293,7 +334,7 @@ def _wait_until_nobody_is_left(group):
 def _running(group):
     found = subprocess.run(["ps", "-eo", "pgid=,stat=,args="], capture_output=True, text=True, check=True).stdout
     lines = [line.split(None, 2) for line in found.splitlines()]
-    return [line for line in lines if line[0] == str(group) and not line[1].startswith("Z") and "spawn_main" in line[2]]
+    return [line for line in lines if line[0] == str(group) and not line[1].startswith("Z")]
 
 
 def test_a_resumed_map_computes_only_what_is_missing(tmp_path, small, monkeypatch):

@@ -51,14 +51,16 @@ def _run(arguments: Any) -> Any:
     request_of = _request(arguments)
     workers = None if arguments.workers is None else check_integer(arguments.workers, "--workers", 1, MOST_WORKERS)
     _check_output(arguments)
+    from ...studies.pool import cores, without_threads
+
+    without_threads()
     from ...studies.map import carry_out
-    from ...studies.pool import cores
 
     request = request_of()
     journal = Path(f"{arguments.output}.partial")
     bar = Bar(arguments.quiet)
     try:
-        found = carry_out(request, workers=workers or cores(), journal=journal, report=bar)
+        found = carry_out(request, workers=workers or cores(), journal=journal, report=bar, may_fork=True)
         bar.clear()
         if found.damaged and not arguments.quiet:
             say(f"stability: damaged lines of {str(journal)!r} left out: {found.damaged}; the points that no other "
