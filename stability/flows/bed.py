@@ -102,9 +102,10 @@ class Piece:
     series: Any  # of the velocity above it
 
     def velocity(self, s: Any) -> Any:
-        """U at the points s."""
+        """U at the points s; it rises from the lower edge."""
         many = isinstance(s, np.ndarray) and s.ndim == 1
-        return self.low + (at_points(s, self.series) if many else C.chebval(2 * s - 1, self.series))
+        above = at_points(s, self.series) if many else C.chebval(2 * s - 1, self.series)
+        return self.low + np.maximum(above, 0.0)
 
     @property
     def top(self) -> float:

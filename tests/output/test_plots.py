@@ -177,7 +177,7 @@ def test_bad_looks_are_refused_in_one_line(tmp_path, monkeypatch, capsys, words,
 
 
 def test_ctrl_c_keeps_the_values_that_are_done(capsys, monkeypatch):
-    from stability.cli.verbs import kmax
+    from stability.studies import kmax
 
     done = []
 
