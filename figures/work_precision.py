@@ -4,21 +4,23 @@ Vortices (slope 30 degrees, Fr2 0.1, k 2) and dunes (shields 2, mu1 0.4, b 1, Re
 30-digit arithmetic, plane Poiseuille flow (Re 1e4, k 1) against a recomputed 24-digit value that agrees with the
 published 0.23752649 + 0.00373967 i (Orszag 1971). Errors are relative. Times in the upper row are CPU times per
 eigenvalue of a sweep of 201 wavenumbers, everything included; dense solves of textbook collocation gain nothing from a
-sweep and are timed alone. The thin dashed curve is the error that the collocation method itself reports. The lower row
-asks for a single eigenvalue of a flow that nothing is known of (full curves), and for one eigenvalue of each flow in a
-loop over 21 values of a parameter (dotted curves, time for each): this package by the tolerance asked for, solve_bvp by
-its residual, even modes by a Galerkin script, and the packages dmsuite and Dedalus 3 (in the loop by its sparse solver,
-next to the eigenvalue before) where they are installed, else as they were measured last (columns machine and
-versions).
+sweep and are timed alone. The pale curves are those of the compiled kernel, measured where there is a C compiler. The
+thin dashed curve is the error that the collocation method itself reports. The lower row asks for a single eigenvalue of
+a flow that nothing is known of (full curves), and for one eigenvalue of each flow in a loop over 21 values of a
+parameter (dotted curves, time for each): this package by the tolerance asked for, solve_bvp by its residual, even modes
+by a Galerkin script, and the packages dmsuite and Dedalus 3 (in the loop by its sparse solver, next to the eigenvalue
+before) where they are installed, else as they were measured last (columns machine and versions).
 """
 
 import csv
+import os
 import platform
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from style import BLUE, GREEN, GREY, ORANGE, RED, main, plt
@@ -32,6 +34,9 @@ from stability.bvp import problem as bvp  # noqa: E402
 from stability.bvp.continuation import continue_in, continue_in_k  # noqa: E402
 from stability.flows.wavy_wall import response  # noqa: E402
 from stability.modes import memory  # noqa: E402
+from stability.numerics.kernel.build import NoKernel, build_kernel  # noqa: E402
+from stability.numerics.kernel.library import library  # noqa: E402
+from stability.numerics.kernel.place import OFF, SWITCH  # noqa: E402
 from stability.numerics.threads import one_thread  # noqa: E402
 from stability.studies.compare import Reference, compare, target, timed  # noqa: E402
 
@@ -44,8 +49,10 @@ VALUES = 21  # of the parameter, the flow itself in the middle
 TOLERANCES = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 RESIDUALS = (1e-3, 1e-4, 1e-5, 1e-6)
 PEERS = "dmsuite", "dedalus"
+COMPILED = "collocation compiled"
 STYLES = {
     "collocation": (BLUE, "o", "collocation, this package"),
+    COMPILED: ("#7fb3d5", "o", "collocation, this package with the extra fast"),
     "bvp": (RED, "s", "solve_bvp continuation, this package"),
     "bvp numerical": (RED, "x", "the same, solve_bvp's own numerical Jacobians"),
     "bvp-thesis": (ORANGE, "D", "the thesis's setting of it"),
@@ -62,6 +69,11 @@ STYLES = {
 
 @one_thread
 def compute(fast):
+    with TemporaryDirectory() as room, carrier(OFF):
+        return measure(fast, kernel_folder(room))
+
+
+def measure(fast, kernel):
     problems = (("vortices", flows.Vortex(slope_deg=30.0, Fr2=0.1), 2.0, None),
                 ("dunes", flows.Dune(shields=2.0, mu1=0.4, b=1.0, Re=10.0), 1.0, None),
                 ("plane Poiseuille", flows.Poiseuille(Re=1e4), 1.0, POISEUILLE))
@@ -77,6 +89,11 @@ def compute(fast):
         rows += [(panel, *row) for row in textbook(flow, k, exact, 32 if fast else 128)]
         asked = single(flow, k, fast) if exact != POISEUILLE else [*single(flow, k, fast), *scripts(flow, k, fast)]
         rows += [(panel, *row) for row in judged(asked, exact)]
+        if kernel:
+            with carrier(kernel):
+                found = [*measured(compare(flow, k, ("collocation",), known=known), exact),
+                         *judged(single(flow, k, True), exact)]
+            rows += [(panel, COMPILED, *row[1:]) for row in found]
     names = ("problem", "method", "setting", "error", "reported", "seconds", "unknowns", "question")
     machine = f"{platform.machine()}, one thread, Python {platform.python_version()}"
     versions = ", ".join(f"{name} {installed(name)}" for name in ("granular-stability", "numpy", "scipy"))
@@ -84,7 +101,28 @@ def compute(fast):
     rows = [(*row, "sweep") if len(row) < len(names) else row for row in rows]
     data = {**dict(zip(names, zip(*rows, strict=True), strict=True)), "machine": [machine] * len(rows),
             "versions": [peers.get(row[1], versions) for row in rows]}
-    return {name: [*data[name], *kept] for name, kept in measured_before(data).items()}
+    return {name: [*data[name], *kept] for name, kept in measured_before(data, kernel).items()}
+
+
+@contextmanager
+def carrier(folder):
+    """The compiled kernel in a folder, or none."""
+    before = os.environ.get(SWITCH)
+    os.environ[SWITCH] = str(folder)
+    library.cache_clear()
+    try:
+        yield
+    finally:
+        os.environ.pop(SWITCH) if before is None else os.environ.update({SWITCH: before})
+        library.cache_clear()
+
+
+def kernel_folder(room):
+    """The folder, with the compiled kernel made in it; None where that fails."""
+    with carrier(room), suppress(NoKernel):
+        build_kernel()
+        return room
+    return None
 
 
 def installed(package):
@@ -95,11 +133,12 @@ def installed(package):
         return ""
 
 
-def measured_before(names):
-    """Columns of the rows of peers that are not installed, in the file that is there."""
+def measured_before(names, kernel):
+    """Columns of the rows of what is not installed, in the file that is there."""
     path = Path(__file__).with_suffix(".csv")
     with open(path, encoding="utf-8", newline="") as file:
-        rows = [row for row in csv.DictReader(file) if row["method"] in PEERS and not installed(row["method"])]
+        rows = [row for row in csv.DictReader(file) if row["method"] in PEERS and not installed(row["method"]) or
+                row["method"] == COMPILED and not kernel]
     return {name: [row[name] for row in rows] for name in names}
 
 
