@@ -380,7 +380,7 @@ def wanted_again():
 def test_one_process_makes_it_for_all(begun, elsewhere):
     for _ in range(3):
         wanted_again()
-    assert begun == [[sys.executable, "-m", "stability.numerics.kernel", "--meanwhile"]]
+    assert begun == [[sys.executable, "-P", "-m", "stability.numerics.kernel", "--meanwhile"]]
     (mark,) = elsewhere.iterdir()
     os.utime(mark, (0, 0))  # who wanted it long ago has not come to an end
     wanted_again()
@@ -402,7 +402,12 @@ def test_what_has_failed_is_not_tried_again(begun, elsewhere, monkeypatch, capsy
     assert capsys.readouterr() == ("", "")
 
 
-def test_a_process_begun_meanwhile_makes_it(elsewhere, folder, monkeypatch):
+def test_a_process_begun_meanwhile_makes_it(elsewhere, folder, monkeypatch, tmp_path_factory):
+    """Whatever lies in the folder from which the question was asked."""
+    here = tmp_path_factory.mktemp("here")
+    (here / "stability").mkdir()
+    (here / "stability" / "__init__.py").write_text("raise SystemExit(1)")
+    monkeypatch.chdir(here)
     monkeypatch.setattr(library, "compiler_installed", lambda: True)
     assert library.library() is None
     assert list(elsewhere.glob("*.wanted"))

@@ -17,6 +17,7 @@ from ...errors import StabilityError
 from .place import FLAGS, SOURCES, SWITCH, compiler_installed, kernel_folders, kernel_name
 
 _PATIENCE = 600.0  # seconds after which somebody who is making it is not any more
+_PACKAGES = Path(__file__).parents[3]  # where this package lies
 _LONGEST = 300.0  # seconds that a compiler may take
 
 
@@ -63,7 +64,7 @@ def _compiled(room: Path) -> Path:
 
 def _compiler() -> list[str]:
     if compiler_installed():
-        return [sys.executable, "-m", "ziglang", "cc", "-mcpu=baseline"]
+        return [sys.executable, "-P", "-m", "ziglang", "cc", "-mcpu=baseline"]
     named = shlex.split(os.environ.get("CC", "cc"))
     if named and shutil.which(named[0]):
         return named
@@ -76,8 +77,10 @@ def build_meanwhile() -> None:
         with suppress(OSError):
             folder.mkdir(parents=True, exist_ok=True)
             if _claimed(_mark(folder)):
-                command = [sys.executable, "-m", __package__, "--meanwhile"]
-                child = Popen(command, stdin=DEVNULL, stdout=DEVNULL, stderr=DEVNULL, start_new_session=True)
+                command = [sys.executable, "-P", "-m", __package__, "--meanwhile"]  # not what is named so where we are
+                path = os.pathsep.join(filter(None, (str(_PACKAGES), os.environ.get("PYTHONPATH"))))
+                child = Popen(command, stdin=DEVNULL, stdout=DEVNULL, stderr=DEVNULL, start_new_session=True,
+                              env=os.environ | {"PYTHONPATH": path})
                 child.returncode = 0  # it may outlive us, and nobody is to be warned of that
             return
 
