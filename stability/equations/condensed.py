@@ -16,7 +16,6 @@ Where the blocks of layers are full this takes much less work; bands would fill.
 
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,8 +23,8 @@ from scipy.sparse import csr_array
 
 from ..numerics.arithmetic import Arithmetic
 from ..numerics.blocks import Blocks
-from ..numerics.bordered import Bordered, Factors, ManyFactors
 from ..numerics.stack import Lines, Stack
+from .combination import Combination
 from .layer import FIELDS
 
 if TYPE_CHECKING:
@@ -152,6 +151,7 @@ class Reduced:
                  for *_, product in keys}
         parts = sorted(set(names.values()), key=lambda names: ("rate" in names, names))
         self.first_b = sum("rate" not in one for one in parts)
+        self.carriers, self.sides = np.arange(len(parts)) >= self.first_b, np.array((0, self.first_b))
         products = [next(product for product, name in names.items() if name == one) for one in parts]
         most = max(map(len, products))
         self.factors = np.array([[*one, *[len(structure.parts)] * (most - len(one))] for one in products])
@@ -169,7 +169,7 @@ class Reduced:
         self.b = Lines(part[self.carrying], rows[self.carrying], columns[self.carrying], len(parts), (size, size))
 
 
-class Condensed:
+class Condensed(Combination):
     """The condensed form S of a pencil whose entries in the layout have these values.
 
     It has the `stack`, `powers`, `factors`, `b_products` and `arithmetic` of a pencil, for weights of its own parts;
@@ -179,58 +179,23 @@ class Condensed:
     def __init__(self, arrangement: Arrangement, value: np.ndarray) -> None:
         self._arrangement = arrangement
         blocks = _condensed(arrangement, value)
-        self._reduced = arrangement.reduced(list(blocks))
-        self.first_b = self._reduced.first_b
-        self.sides = np.array((0, self.first_b))
+        self._where = arrangement.reduced(list(blocks))
+        self.first_b, self.sides = self._where.first_b, self._where.sides
         self._value = np.concatenate([block.ravel() for block in blocks.values()])
+        self._carried = self._value[self._where.carrying]
         self._rows = Stack(arrangement.rows, value[arrangement.in_rows])
         self._columns = Stack(arrangement.columns, value[arrangement.in_columns])
-
-    @cached_property
-    def stack(self) -> Stack:
-        return Stack(self._reduced.stack, self._value)
-
-    @cached_property
-    def _bordered(self) -> Bordered:
-        return Bordered(self._reduced.places, self._value)
-
-    @cached_property
-    def _b(self) -> Stack:
-        return Stack(self._reduced.b, -self._value[self._reduced.carrying])
 
     @property
     def arithmetic(self) -> Arithmetic:
         return Arithmetic(self)  # nothing is kept: what refers to itself would outlive its use
 
-    def changes(self, x: np.ndarray, y: np.ndarray, *steps: np.ndarray) -> np.ndarray:
-        """y^T part x for every part, and with `steps` dx and dy of dx and y, and x and dy: (1 or 3, parts, ...)."""
-        products, brackets = self.stack.times(x), self.stack.brackets
-        pairs = [(y, products)]
-        if steps:
-            pairs += [(y, self.stack.times(steps[0])), (steps[1], products)]
-        return np.array([brackets(*pair) for pair in pairs])
-
     def weights(self, weights: "Weights") -> "Weights":
         """The `Weights` of its parts for those of the parts of the pencil, without their spread."""
-        factors, one = self._reduced.factors, np.ones((1, *weights.value.shape[1:]))
+        factors, one = self._where.factors, np.ones((1, *weights.value.shape[1:]))
         value = np.concatenate((weights.value, one))[factors].prod(axis=1)
         slopes = np.concatenate((weights.slope / weights.value, 0 * one))[factors].sum(axis=1)
         return replace(weights, value=value, slope=value * slopes, spread=0 * value)
-
-    def powers(self, rate: Any) -> np.ndarray:
-        """Factor of every part: 1, or the rate; (parts,) then the shape of rate."""
-        powers = np.ones((len(self._reduced.factors), *np.shape(rate)), np.result_type(rate, float))
-        powers[self.first_b:] = rate
-        return powers
-
-    def factors(self, weights: np.ndarray, rate: Any) -> Any:
-        """Return LU factors for weights (parts,), or (parts, points) and rates (points,)."""
-        kind = ManyFactors if np.ndim(rate) else Factors
-        return kind(self._bordered, weights * self.powers(rate))
-
-    def b_products(self, weights: np.ndarray) -> Any:
-        """Return the products of what the rate multiplies with vectors from either side, as functions."""
-        return self._b.summed(weights)
 
     def restricted(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The parts R of vectors x and y (without conjugation)."""

@@ -12,7 +12,6 @@ the matrices are banded. What has no row opposite (constants of integration, sur
 form the border.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -22,10 +21,10 @@ import numpy as np
 from ..numerics import chebyshev
 from ..numerics.arithmetic import Arithmetic
 from ..numerics.blocks import Blocks, placed
-from ..numerics.bordered import Bordered, Factors, ManyFactors
 from ..numerics.kernel.compiled import Compiled, Packed
 from ..numerics.kernel.library import library
 from ..numerics.stack import Lines, Stack
+from .combination import Combination
 from .condensed import Arrangement, Condensed, condensable
 from .layer import FIELDS
 
@@ -159,7 +158,7 @@ def _common(one: dict[str, np.ndarray], other: dict[str, np.ndarray]) -> tuple[n
     return tuple(np.concatenate([side[name][:count] for name, count in counts.items()]) for side in (one, other))
 
 
-class Pencil:
+class Pencil(Combination):
     """Constant matrices of A(k) - rate B(k): entries that lie where `layout` says, with values (entries of its table,).
 
     The residual of the equations is (A - rate B) x. Attributes of the layout are those of the pencil; `stack` and
@@ -173,7 +172,6 @@ class Pencil:
         self.size, self.columns, self.rows, self.last = layout.size, layout.columns, layout.rows, layout.last
         self.rate_rows = layout.rate_rows
         self.real = np.isrealobj(values)
-        self.stack = Stack(layout.stack, values[layout.inside])
         self.cuts = [(self.parts.index(monomial), unknown, self.rows[equation.name], bound)
                      for equation in system.equations for unknown, monomial, bound in equation.cuts]
 
@@ -195,10 +193,6 @@ class Pencil:
         full = np.zeros((count, *coefficients.shape[1:]), coefficients.dtype)
         full[self.layout.orders[name]] = coefficients
         return full
-
-    def powers(self, rate: Any) -> np.ndarray:
-        """Factor of every part in the residual: 1 in A, the rate in B; (parts,) then the shape of rate."""
-        return np.where(self.layout.carriers[(...,) + (None,) * np.ndim(rate)], rate, 1.0)
 
     def cut(self, weights: Any, y: Any, x: Any) -> Any:
         """Bound on what series left out change y^T (A - rate B) x, (points,); `weights` (parts, points) of the parts.
@@ -240,28 +234,22 @@ class Pencil:
         return Stack(self.layout.tail, self._values[self.layout.beyond])
 
     @cached_property
-    def _b(self) -> Stack:
-        return Stack(self.layout.b, -self._values[self.layout.carrying])
-
-    def b_products(self, weights: np.ndarray) -> tuple[Callable[..., Any], ...]:
-        """Return the functions B x of x and y^T B of y, (size, points) or (size,), for weights (parts, points) or
-        (parts,) of the parts."""
-        return self._b.summed(weights)
-
-    def factors(self, weights: np.ndarray, rate: Any) -> Any:
-        """Return LU factors of A - rate B for weights (parts,) of the parts, or (parts, points) and rates (points,)."""
-        kind = ManyFactors if np.ndim(rate) else Factors
-        return kind(self._bordered, weights * self.powers(rate))
-
-    @cached_property
     def condensed(self) -> Condensed | None:
         """The same eigenproblem with half the unknowns, where that pays."""
         arrangement = self.layout.arrangement
-        return Condensed(arrangement, self._values[self.layout.inside]) if arrangement else None
+        return Condensed(arrangement, self._value) if arrangement else None
 
-    @cached_property
-    def _bordered(self) -> Bordered:
-        return Bordered(self.layout.places, self._values[self.layout.inside])
+    @property
+    def _where(self) -> Layout:  # type: ignore[override]
+        return self.layout
+
+    @property
+    def _value(self) -> np.ndarray:  # type: ignore[override]
+        return self._values[self.layout.inside]
+
+    @property
+    def _carried(self) -> np.ndarray:  # type: ignore[override]
+        return self._values[self.layout.carrying]
 
     def pair(self, weights: Any) -> Any:
         """Return A and B in full, each (size, size)."""

@@ -60,17 +60,18 @@ class Arithmetic:
 
     def brackets(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """y^T part x for every part: (parts,) or (parts, points)."""
-        return self._pencil.stack.brackets(y, self._pencil.stack.times(x))
+        return self.pairs(x, y)[0]
 
-    def changes(self, x: np.ndarray, y: np.ndarray, dx: np.ndarray, dy: np.ndarray) -> tuple[np.ndarray, ...]:
-        """The `brackets` of x and y, of dx and y, and of x and dy: (3, parts, ...).
-
-        With them the sums of |y_i entry_ij x_j|^2 of every part, (parts, ...).
-        """
+    def pairs(self, x: np.ndarray, y: np.ndarray, *steps: np.ndarray) -> np.ndarray:
+        """The `brackets` of x and y, and with `steps` dx and dy of dx and y, and of x and dy: (1 or 3, parts, ...)."""
         stack = self._pencil.stack
         products = stack.times(x)
-        pairs = (y, products), (y, stack.times(dx)), (dy, products)
-        return np.array([stack.brackets(*pair) for pair in pairs]), stack.squares(y, x)
+        pairs = [(y, products), *([(y, stack.times(steps[0])), (steps[1], products)] if steps else [])]
+        return np.array([stack.brackets(*pair) for pair in pairs])
+
+    def changes(self, x: np.ndarray, y: np.ndarray, dx: np.ndarray, dy: np.ndarray) -> tuple[np.ndarray, ...]:
+        """The `pairs` (3, parts, ...), and with them the sums of |y_i entry_ij x_j|^2 of every part, (parts, ...)."""
+        return self.pairs(x, y, dx, dy), self._pencil.stack.squares(y, x)
 
     def beyond(self, weights: np.ndarray, x: np.ndarray) -> np.ndarray:
         """The rows beyond the truncation, weights times parts, times x: (rows,) or (rows, points)."""

@@ -204,7 +204,7 @@ def _quotient(pencil: Any, weights: Any, x: np.ndarray, y: np.ndarray, steps: An
     """
     arithmetic, (inner, own), squares = pencil.arithmetic, inside or (pencil, weights), None
     if inner is not pencil:
-        rate, _, _, change = _slopes(own, inner.changes(x, y, *steps if bars else ()), inner.sides)
+        rate, _, _, change = _slopes(own, inner.arithmetic.pairs(x, y, *steps if bars else ()), inner.sides)
         x, y = inner.continued(weights.value * pencil.powers(rate), x, y)
         brackets = arithmetic.brackets(x, y)[None]
         rate, norm, slope, _ = _slopes(weights, brackets, pencil.layout.sides)
