@@ -20,6 +20,11 @@ class Combination:
     _value: Any
     _carried: Any
 
+    @property
+    def entries(self) -> int:
+        """How many numbers the bordered matrix of one point takes."""
+        return self._where.places.count
+
     @cached_property
     def stack(self) -> Stack:
         return Stack(self._where.stack, self._value)

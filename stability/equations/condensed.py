@@ -11,7 +11,8 @@ the eigenvalues are those of S = H - G P^{-1} F: P^{-1} = 1/2 - N/4 is a polynom
 has the rate, but what it multiplies, continuity, has none, nor has G: S is linear in it as well, a smaller pencil, with
 products of the parts as its parts. Vectors of S are continued to E by P x_E = -F x_R and y_E P = -y_R G.
 
-Where the blocks of layers are full this takes much less work; bands would fill.
+Where the blocks of layers are full this takes much less work. Bands stay bands, since integrals and products with short
+series are; what it takes to form S then pays at many wavenumbers.
 """
 
 from collections.abc import Iterator
@@ -22,7 +23,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ..numerics.arithmetic import Arithmetic
-from ..numerics.blocks import Blocks
+from ..numerics.blocks import placed
 from ..numerics.stack import Lines, Stack
 from .combination import Combination
 from .layer import FIELDS
@@ -77,10 +78,13 @@ class Groups:
             self.sizes[number] = len(inside)
 
     def sorted(self, group: np.ndarray, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The rows (or columns) of R, and those of E, group by group."""
+        """The rows (or columns) of R, as they lie in the layout, and those of E, group by group."""
         order = np.lexsort((place, group))
-        given = self.given[group[order]]
-        return order[~given], order[given]
+        return np.flatnonzero(~self.given[group]), order[self.given[group[order]]]
+
+    def within(self, group: np.ndarray, kept: np.ndarray) -> list[np.ndarray]:
+        """Where the rows (or columns) of each group lie among those that are kept."""
+        return [np.flatnonzero(group[kept] == number) for number in range(len(self.sizes))]
 
 
 class Arrangement:
@@ -130,6 +134,10 @@ class Arrangement:
         flat = self._sum @ value
         yield from ((key, flat[where].reshape(shape)) for key, where, shape in self._blocks)
 
+    def any_value(self) -> np.ndarray:
+        """Values of entries in the layout none of which, nor of their products, is 0 by chance."""
+        return 1 + np.random.default_rng(1).random(self._sum.shape[1])
+
     def reduced(self, keys: list[Key]) -> "Reduced":
         """Where the entries of S lie, blocks with these keys: the same for all pencils."""
         if self._reduced is None or self._reduced.keys != keys:
@@ -141,8 +149,9 @@ class Reduced:
     """Where the entries of condensed pencils lie, blocks with these `keys` one after the other, row by row.
 
     `factors` (parts, 3) are the parts of the pencil whose product is a part of S, a number beyond them standing for 1;
-    parts from `first_b` on have the rate. `stack`, `places` and `b` tell where the entries of S, of its bordered matrix
-    and those with the rate, `carrying`, lie.
+    parts from `first_b` on have the rate. `entries` are those of the blocks, one behind the other, that are not 0
+    by structure; `stack`, `places` and `b` tell where they, those of the bordered matrix and those with the rate,
+    `carrying`, lie.
     """
 
     def __init__(self, arrangement: Arrangement, keys: list[Key]) -> None:
@@ -155,16 +164,17 @@ class Reduced:
         products = [next(product for product, name in names.items() if name == one) for one in parts]
         most = max(map(len, products))
         self.factors = np.array([[*one, *[len(structure.parts)] * (most - len(one))] for one in products])
-        sizes = np.where(groups.given, 0, groups.sizes)
-        starts = np.cumsum(sizes) - sizes
+        pattern = [block != 0 for block in _condensed(arrangement, arrangement.any_value()).values()]
+        self.entries = np.flatnonzero(np.concatenate([block.ravel() for block in pattern]))
+        rows_of = groups.within(groups.row, arrangement.kept_rows)
+        columns_of = groups.within(groups.column, arrangement.kept_columns)
         entries = []
-        for row, column, product in keys:
-            inside = np.indices((sizes[row], sizes[column])).reshape(2, -1) + starts[[row, column], None]
-            entries.append((np.full(inside.shape[1], parts.index(names[product])), *inside))
+        for (row, column, product), (i, j) in zip(keys, map(np.nonzero, pattern), strict=True):
+            entries.append((np.full(len(i), parts.index(names[product])), rows_of[row][i], columns_of[column][j]))
         part, rows, columns = (np.concatenate(one) for one in zip(*entries, strict=True))
-        size, border = len(arrangement.kept_rows), int(sizes[-1])
+        size, border = len(arrangement.kept_rows), int(groups.sizes[-1])
         self.stack = Lines(part, rows, columns, len(parts), (size, size))
-        self.places = Blocks(part, rows, columns, len(parts), size - border, border)
+        self.places = placed(part, rows, columns, len(parts), size - border, border)
         self.carrying = np.flatnonzero(part >= self.first_b)
         self.b = Lines(part[self.carrying], rows[self.carrying], columns[self.carrying], len(parts), (size, size))
 
@@ -181,7 +191,7 @@ class Condensed(Combination):
         blocks = _condensed(arrangement, value)
         self._where = arrangement.reduced(list(blocks))
         self.first_b, self.sides = self._where.first_b, self._where.sides
-        self._value = np.concatenate([block.ravel() for block in blocks.values()])
+        self._value = np.concatenate([block.ravel() for block in blocks.values()])[self._where.entries]
         self._carried = self._value[self._where.carrying]
         self._rows = Stack(arrangement.rows, value[arrangement.in_rows])
         self._columns = Stack(arrangement.columns, value[arrangement.in_columns])

@@ -240,11 +240,12 @@ class Solver:
         `rates` (points,) and right and left `vectors` (points, size) of this degree are good guesses. Without rates
         the quotients of the vectors are.
         """
-        modes, (x, y) = [], vectors
-        count = max(1, min(_TOGETHER[0], _TOGETHER[1] // self.pencil(degree).layout.places.count))
+        modes, (x, y), pencil = [], vectors, self.pencil(degree)
+        entries = (pencil.condensed_for(len(wavenumbers)) or pencil).entries
+        count = max(1, min(_TOGETHER[0], _TOGETHER[1] // entries))
         for first in range(0, len(wavenumbers), count):
             part = slice(first, first + count)
-            eigen = refine_many(self.pencil(degree), self.weights(wavenumbers[part]),
+            eigen = refine_many(pencil, self.weights(wavenumbers[part]),
                                 None if rates is None else rates[part],
                                 x[part], y[part], self.bars, self.vectors)
             found = [self._mode(k, degree, one) for k, one in zip(wavenumbers[part], eigen.split(), strict=True)]

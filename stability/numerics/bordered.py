@@ -14,7 +14,7 @@ import numpy as np
 from scipy.linalg import lapack
 from scipy.sparse import csr_array
 
-from .stack import with_data
+from .stack import product, with_data
 
 UNEVEN = 1e6  # largest entry of a sum above which its rows and columns are scaled
 
@@ -104,7 +104,7 @@ class Bordered:
         column near 1: an unknown that is tiny beside the others would else be found with few digits of its own.
         Elsewhere the scales are None.
         """
-        values, scales = self._matrix @ weights, None
+        values, scales = product(self._matrix, weights), None
         if np.abs(values.view(float)).max(initial=0) > UNEVEN:
             scales = self._scales(np.abs(values))
             values *= scales[0][self.places.row] * scales[1][self.places.column]
@@ -112,7 +112,7 @@ class Bordered:
 
     def sums(self, weights: Any) -> Any:
         """Return the blocks of the sums at many points, weights (parts, points), unscaled, and which are uneven."""
-        values = np.ascontiguousarray((self._matrix @ weights).T)
+        values = np.ascontiguousarray(product(self._matrix, weights).T)
         return self.places.blocks(values), np.abs(values.view(float)).max(axis=1) > UNEVEN
 
     def _scales(self, size: np.ndarray) -> np.ndarray:

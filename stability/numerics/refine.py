@@ -95,7 +95,7 @@ def refine_many(pencil: Any, weights: Any, rate: np.ndarray | None, x: np.ndarra
     Without `bars` the rounding is left at 0: a rough look does not need it. Without a rate the quotient of the vectors
     is the guess.
     """
-    inner, own, x, y = _inside(pencil.condensed, pencil, weights, x.T, y.conj().T)
+    inner, own, x, y = _inside(pencil.condensed_for(len(x)), pencil, weights, x.T, y.conj().T)
     arithmetic = inner.arithmetic
     if rate is None:
         rate = _rate(inner, own.value * arithmetic.brackets(x, y))

@@ -45,7 +45,7 @@ class Lines:
     def to_rows(self, values: np.ndarray) -> np.ndarray:
         """Sums of the values (lines, ...) of each row, (rows, ...)."""
         if self._by_row is not None:
-            return self._by_row @ values
+            return product(self._by_row, values)
         total = np.zeros((self.rows, *values.shape[1:]), values.dtype)
         total[self.row] = values
         return total
@@ -102,7 +102,7 @@ class Stack:
 
     def times(self, x: np.ndarray) -> np.ndarray:
         """Products of every part with x: (lines, points), for the methods below."""
-        return self._matrix @ x
+        return product(self._matrix, x)
 
     def spread(self, weights: np.ndarray) -> np.ndarray:
         """Weights (parts, points) of the lines: (lines, points), for the methods below."""
@@ -114,7 +114,7 @@ class Stack:
 
     def total_left(self, spread: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Sum over the parts, weights times y^T part: (columns, points)."""
-        return self._transposed @ (spread * y[self.lines.row])
+        return product(self._transposed, spread * y[self.lines.row])
 
     def summed(self, weights: np.ndarray) -> tuple[Callable[..., Any], ...]:
         """Products of the sum of the parts, times weights (parts, ...), with vectors: functions of x, and of y."""
@@ -135,6 +135,14 @@ def with_data(matrix: Any, data: np.ndarray) -> Any:
     other = object.__new__(type(matrix))
     other.__dict__.update(matrix.__dict__, data=data)
     return other
+
+
+def product(matrix: Any, x: np.ndarray) -> Any:
+    """A sparse matrix times (columns,) or (columns, points), a real one as it is: scipy would make it complex first."""
+    if matrix.dtype.kind == "f" and x.dtype.kind == "c":
+        parts = np.ascontiguousarray(x).view(float).reshape(len(x), -1)
+        return (matrix @ parts).view(complex).reshape(-1, *x.shape[1:])
+    return matrix @ x
 
 
 def square(z: Any) -> Any:
