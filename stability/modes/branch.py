@@ -18,6 +18,7 @@ import numpy as np
 from ..errors import ModeLost, ParameterError
 from ..flows.sources import shipped
 from .foresight import Foresight
+from .interpolation import hermite, interpolated, intervals
 from .solver import transfer
 from .tracking import Walk
 
@@ -127,12 +128,12 @@ class Branch:
             return near
         try:
             if len(nodes) > 1 and k != near.k:
-                rate = _hermite(nodes, index, log(k))
+                rate = hermite(nodes, index, log(k))
                 seen = self._rough.foreseen(k, rate, _DRIFT)
                 guess = seen or self._interpolated(nodes, index, k, rate)
                 degree = None if seen else self._likely_degree(nodes[index: index + 2], known)
                 mode = self._solved(k, guess.rate, (guess.degree, guess.x, guess.y), degree)
-                if mode and _near(mode, rate, near) and abs(self.solver.overlap(near, mode) - 1) < _ASTRAY:
+                if mode and _near(mode, near, rate) and abs(self.solver.overlap(near, mode) - 1) < _ASTRAY:
                     return mode
             mode = self._solved(near.k, near.rate, (near.degree, near.x, near.y)) or near
             return mode if k == near.k else Walk(self.solver, mode).to(k)
@@ -158,45 +159,87 @@ class Branch:
             return None
 
     def _together(self, wavenumbers: list[float]) -> "dict[float, Mode]":
-        """Modes at many wavenumbers: of those between two nodes of the walk some are refined one by one, and the others
-        together, next to the interpolation between those."""
-        gaps = {}
-        for k, (nodes, index) in zip(wavenumbers, _intervals(self.segments, wavenumbers), strict=True):
-            gaps.setdefault((id(nodes[0]), index), (nodes, index, []))[2].append(k)
-        found, between = {}, {}
-        last = {segment: max(index for other, index in gaps if other == segment) for segment, _ in gaps}
-        for (segment, number), (nodes, index, inside) in gaps.items():
-            ends = [inside[0], inside[-1]] if number == last[segment] else [inside[0]]
-            chosen = inside if len(inside) <= _FEW else ends
-            finer, rest = between.setdefault(segment, ([], []))
-            for k in chosen:
-                found[k] = self._between(nodes, index, k, finer[-1] if finer else None)
-                finer += [found[k]] if not isinstance(found[k], ModeLost) else []
-            rest += [(k, nodes, index) for k in inside if k not in found]
-        for finer, rest in between.values():
-            found |= self._refined(finer, rest)
+        """Modes at many wavenumbers, next to the interpolation between anchors; at a few, one by one."""
+        if len(wavenumbers) <= _FEW:
+            return {k: self._between(nodes, index, k) for k, (nodes, index) in
+                    zip(wavenumbers, intervals(self.segments, wavenumbers), strict=True)}
+        gaps: dict[Any, Any] = {}
+        wavenumbers = sorted(wavenumbers)
+        for k, (nodes, index) in zip(wavenumbers, intervals(self.segments, wavenumbers), strict=True):
+            gaps.setdefault(id(nodes), {}).setdefault(index, (nodes, index, []))[-1].append(k)
+        found: dict[float, Any] = {}
+        for between in gaps.values():
+            found |= self._refined(*self._anchored(list(between.values())))
         return found
 
-    def _refined(self, finer: "list[Mode]", rest: list[Any]) -> dict[Any, Any]:
-        """{k: mode} for each of the `rest` (k, nodes of the walk, index of the one before) next to the interpolation
-        between the modes `finer`; what does not settle there is refined alone."""
-        batches, found, last = {}, {}, finer[-1] if finer else None
-        places = _intervals([finer], [k for k, *_ in rest]) if len(finer) > 1 and rest else []
-        for (_, index), one in zip(places, rest, strict=False):
-            batches.setdefault(max(finer[index].degree, finer[index + 1].degree), {}).setdefault(index, []).append(one)
+    def _anchored(self, gaps: list[Any]) -> tuple[Any, ...]:
+        """Anchors (mode, degree) of the interpolation in gaps (nodes of the walk, index of the one before, wavenumbers)
+        of one segment, {k: mode} of those that were refined one by one, and the others (k, nodes, index).
+
+        The nodes of the walk are anchors, where they have nearly as many coefficients as it takes; elsewhere the first
+        wavenumber in each gap and the last are.
+        """
+        anchors, found, rest = [], {}, []
+        for (nodes, index, inside), following in zip(gaps, [*gaps[1:], None], strict=True):
+            ends, degree = nodes[index: index + 2], self._likely_degree(nodes[index: index + 2], None)
+            near = len(ends) == 2 and self._rung(degree) <= min(self._rung(node.degree) for node in ends) + 1
+            if near:
+                alone = [k for k in inside[:1] if k == ends[0].k]
+                anchors += [(node, degree) for node in ends[: 1 if following and following[1] == index + 1 else 2]]
+            else:
+                alone = inside if len(inside) <= _FEW else [inside[0]] if following else [inside[0], inside[-1]]
+            for k in alone:
+                found[k] = mode = self._between(nodes, index, k, anchors[-1][0] if anchors else None)
+                anchors += [(mode, mode.degree)] if not near and not isinstance(mode, ModeLost) else []
+            rest += [(k, nodes, index) for k in inside if k not in found]
+        return anchors, found, rest
+
+    def _rung(self, degree: int) -> int:
+        return self.solver.degrees.index(degree)
+
+    def _refined(self, anchors: list[Any], found: dict[Any, Any], rest: list[Any]) -> dict[Any, Any]:
+        """{k: mode}, those `found` and each of the `rest` (k, nodes of the walk, index of the one before) next to the
+        interpolation between the `anchors`; what does not settle there is refined alone."""
+        finer = [mode for mode, _ in anchors]
+        batches: dict[int, dict[int, list[Any]]] = {}
+        places = intervals([finer], [k for k, *_ in rest]) if len(finer) > 1 and rest else []
+        for (_, index), (k, *_) in zip(places, rest, strict=False):
+            degree = max(anchors[index][1], anchors[index + 1][1])
+            batches.setdefault(degree, {}).setdefault(index, []).append(k)
         for degree, batch in batches.items():
-            wavenumbers = [k for group in batch.values() for k, *_ in group]
-            guesses = [interpolated(self.solver, finer, index, np.log([k for k, *_ in group]), degree)
-                       for index, group in batch.items()]
+            guesses = [interpolated(self.solver, finer, index, np.log(inside), degree)
+                       for index, inside in batch.items()]
             rates, *vectors = (np.concatenate(parts) for parts in zip(*guesses, strict=True))
-            before = [finer[index] for index, group in batch.items() for _ in group]
-            modes = self.solver.solve_many(wavenumbers, rates, vectors, degree)
-            found |= {k: mode for k, mode, rate, near in zip(wavenumbers, modes, rates, before, strict=True)
-                      if mode and _near(mode, rate, near)}
+            wavenumbers = [k for inside in batch.values() for k in inside]
+            nodes = [finer[index] for index, inside in batch.items() for _ in inside]
+            settled = self._settled(wavenumbers, rates, vectors, degree, nodes)
+            for index, inside in batch.items():
+                first = settled.get(inside[0])
+                if first and abs(self.solver.overlap(finer[index], first) - 1) < _ASTRAY:
+                    found |= {k: settled[k] for k in inside if k in settled}
+        last = finer[-1] if finer else None
         return found | {k: self._between(nodes, index, k, last) for k, nodes, index in rest if k not in found}
 
+    def _settled(self, wavenumbers: list[float], rates: np.ndarray, vectors: Any, degree: int,
+                 nodes: "list[Mode]") -> "dict[float, Mode]":
+        """{k: mode} of what settles near its guess, `nodes` being those before, at this degree or the one it takes."""
+        modes = self.solver.solve_many(wavenumbers, rates, vectors, degree)
+        near = [one for one in zip(wavenumbers, modes, nodes, rates, strict=True) if one[1] and _near(*one[1:])]
+        found, lacking = {}, {}
+        for k, mode, node, _ in near:
+            if self.solver.fits(mode) or degree == self.solver.degrees[-1]:
+                found[k] = mode
+            else:
+                lacking.setdefault(self.solver.likely_degree(mode), []).append((mode, node))
+        for higher, pairs in lacking.items():
+            again = [transfer(self.solver, (degree, mode.x, mode.y), higher) for mode, _ in pairs]
+            found |= self._settled([mode.k for mode, _ in pairs], np.array([mode.rate for mode, _ in pairs]),
+                                   [np.array(rows) for rows in zip(*again, strict=True)], higher,
+                                   [node for _, node in pairs])
+        return found
 
-def _near(mode: "Mode", rate: complex, node: "Mode") -> bool:
+
+def _near(mode: "Mode", node: "Mode", rate: complex) -> bool:
     """Whether a mode is where the interpolation of its rate from `node` and the next one expects it."""
     return abs(mode.rate - rate) < _DRIFT * (abs(rate) + abs(node.rate - rate))
 
@@ -289,49 +332,3 @@ def _glance(solver: Any, k: Any, limit: Any, exponent: Any, above: Any = None) -
 
 def _distance(mode: "Mode", limit: complex, exponent: complex) -> float:
     return max(abs(mode.sigma / limit - 1), abs(mode.k * mode.slope / mode.sigma - exponent))
-
-
-def _intervals(segments: "list[list[Mode]]", wavenumbers: list[float]) -> list[tuple[Any, ...]]:
-    """For each wavenumber the segment that contains it, or the one that ends nearest to it, and the node before it."""
-    logs, t = [np.log([node.k for node in nodes]) for nodes in segments], np.log(wavenumbers)
-    outside = np.array([np.maximum(np.maximum(ends.min() - t, t - ends.max()), 0) for ends in logs])
-    before = [np.clip(np.searchsorted(ends, t, side="right") - 1, 0, max(len(ends) - 2, 0)).tolist() for ends in logs]
-    nearest, gaps = outside.argmin(axis=0).tolist(), outside.min(axis=0).tolist()
-    places = []
-    for number, (which, far) in enumerate(zip(nearest, gaps, strict=True)):
-        nodes, ends = segments[which], logs[which]
-        if far:
-            places.append(([nodes[0 if abs(ends[0] - t[number]) < abs(ends[-1] - t[number]) else -1]], 0))
-        else:
-            places.append((nodes, before[which][number]))
-    return places
-
-
-def _hermite(nodes: "list[Mode]", index: int, t: Any) -> Any:
-    """The cubic through rates and slopes of a node and the next one at log k = t, a number or (points,)."""
-    here, there = nodes[index], nodes[index + 1]
-    h = log(there.k / here.k)
-    u = (t - log(here.k)) / h
-    rise = there.rate - here.rate
-    a, b = h * here.k * here.rate_slope - rise, rise - h * there.k * there.rate_slope
-    return here.rate + u * rise + u * (1 - u) * (a * (1 - u) + b * u)
-
-
-def interpolated(solver: "Solver", nodes: "list[Mode]", index: int, t: np.ndarray,
-                 degree: int) -> tuple[np.ndarray, ...]:
-    """Rates (cubic, values and slopes of two nodes) and vectors (cubic, four nodes) at log k = t (points,)."""
-    first = min(max(index - 1, 0), max(len(nodes) - 4, 0))
-    used = nodes[first: first + 4]
-    times = np.log([node.k for node in used])
-    ratios = (t - times[:, None]) / (times[:, None] - times + np.eye(len(used)))[..., None]
-    ratios[np.diag_indices(len(used))] = 1.0
-    weights = ratios.prod(axis=1)
-    vectors = [transfer(solver, (node.degree, node.x, node.y), degree) for node in used]
-    return _hermite(nodes, index, t), *(_blend(weights, rows, index - first) for rows in zip(*vectors, strict=True))
-
-
-def _blend(weights: np.ndarray, vectors: tuple[Any, ...], reference: int) -> np.ndarray:
-    """Weighted sums (points, size) of eigenvectors, each first given the scale of the one at `reference`."""
-    base = vectors[reference]
-    size = np.vdot(base, base)
-    return weights.T @ np.array([size / np.vdot(base, vector) * vector for vector in vectors])

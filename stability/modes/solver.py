@@ -235,7 +235,7 @@ class Solver:
 
     def solve_many(self, wavenumbers: list[float], rates: np.ndarray | None, vectors: list[np.ndarray],
                    degree: int) -> list[Any]:
-        """Return the modes at many wavenumbers at once, None where more work is needed.
+        """Return the modes at many wavenumbers at once, at this degree, None where the iteration does not settle.
 
         `rates` (points,) and right and left `vectors` (points, size) of this degree are good guesses. Without rates
         the quotients of the vectors are.
@@ -249,8 +249,7 @@ class Solver:
                                 None if rates is None else rates[part],
                                 x[part], y[part], self.bars, self.vectors)
             found = [self._mode(k, degree, one) for k, one in zip(wavenumbers[part], eigen.split(), strict=True)]
-            modes += [mode if settled and self.fits(mode) else None
-                      for mode, settled in zip(found, eigen.settled, strict=True)]
+            modes += [mode if settled else None for mode, settled in zip(found, eigen.settled, strict=True)]
         return modes
 
     def fits(self, mode: Mode) -> bool:
