@@ -23,7 +23,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ..numerics.arithmetic import Arithmetic
-from ..numerics.blocks import placed
+from ..numerics.blocks import whole
 from ..numerics.stack import Lines, Stack
 from .combination import Combination
 from .layer import FIELDS
@@ -174,7 +174,7 @@ class Reduced:
         part, rows, columns = (np.concatenate(one) for one in zip(*entries, strict=True))
         size, border = len(arrangement.kept_rows), int(groups.sizes[-1])
         self.stack = Lines(part, rows, columns, len(parts), (size, size))
-        self.places = placed(part, rows, columns, len(parts), size - border, border)
+        self.places = whole(part, rows, columns, len(parts), size - border, border)
         self.carrying = np.flatnonzero(part >= self.first_b)
         self.b = Lines(part[self.carrying], rows[self.carrying], columns[self.carrying], len(parts), (size, size))
 

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from .table import Table
 
 _CONDENSED = 16, 96  # degrees for which it pays to condense full blocks for one eigenvalue
-_MANY = 500, 2e-3  # points times terms for which it pays to condense anything: at least, and by the cube of the terms
+_MANY = 300, 2e-3  # points times terms for which it pays to condense anything: at least, and by the cube of the terms
 _ENDS = 4  # terms of a series, twice so many before them: they tell how fast it falls
 _LAST = 4  # rows of an equation whose left vector bounds that of the tail: the last two alone feel the truncation
 

@@ -16,6 +16,7 @@ from scipy.sparse import csr_array
 
 from .stack import product, with_data
 
+_CHUNK = 1 << 15  # numbers that are brought from columns to rows at once
 UNEVEN = 1e6  # largest entry of a sum above which its rows and columns are scaled
 
 _FULL = {"f": (lapack.dgetrf, lapack.dgetri), "c": (lapack.zgetrf, lapack.zgetri)}
@@ -26,7 +27,8 @@ class Places:
     """Where the entries part, row, column (entries,) of `parts` sparse matrices lie in a bordered band matrix.
 
     The band is stored by columns as LAPACK's gbtrf wants it: entry (row, column) at [column, lower + upper + row -
-    column], the first `lower` places being room for fill; behind it `right` and then `bottom` with the corner.
+    column], the first `lower` places being room for fill; behind it `right` and then `bottom` with the corner. Of these
+    `count` places those `used` have an entry, at `row` and `column`.
     """
 
     def __init__(self, part: np.ndarray, row: np.ndarray, column: np.ndarray, parts: int, interior: int,
@@ -42,10 +44,10 @@ class Places:
         self._order = np.argsort(place, kind="stable").astype(np.int32)
         place = place[self._order]
         first = np.flatnonzero(np.diff(place, prepend=-1))
-        self._place = place[first]
+        self.used = place[first]
         self.row, self.column = (index[self._order][first].astype(np.int32) for index in (row, column))
-        self._matrix = csr_array((np.zeros(len(place)), part[self._order], np.append(first, len(place))),
-                                 (len(first), parts))
+        ends = np.searchsorted(place, np.arange(self._starts[-1] + 1))
+        self._matrix = csr_array((np.zeros(len(place)), part[self._order], ends), (self._starts[-1], parts))
 
     def _inner(self, row: np.ndarray, column: np.ndarray, inside: np.ndarray) -> tuple[tuple[int, int], np.ndarray]:
         """The shape of the array of the interior, and where entries lie in it."""
@@ -59,14 +61,12 @@ class Places:
         return BandFactors(band, self.lower, self.upper)
 
     def matrix(self, value: np.ndarray) -> Any:
-        """The sparse matrix (places, parts) of entries with these values (entries,)."""
+        """The sparse matrix (count, parts) of entries with these values (entries,)."""
         return with_data(self._matrix, value[self._order])
 
     def blocks(self, values: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Return band, right and bottom with these values (..., places) in place."""
-        flat = np.zeros((*values.shape[:-1], self._starts[3]), values.dtype)
-        flat[..., self._place] = values
-        return tuple(flat[..., start: stop].reshape(*values.shape[:-1], *shape) for start, stop, shape in
+        """Return band, right and bottom, of all the values (..., count)."""
+        return tuple(values[..., start: stop].reshape(*values.shape[:-1], *shape) for start, stop, shape in
                      zip(self._starts[:-1], self._starts[1:], self._shapes, strict=True))
 
 
@@ -106,14 +106,28 @@ class Bordered:
         """
         values, scales = product(self._matrix, weights), None
         if np.abs(values.view(float)).max(initial=0) > UNEVEN:
-            scales = self._scales(np.abs(values))
-            values *= scales[0][self.places.row] * scales[1][self.places.column]
+            used = self.places.used
+            scales = self._scales(np.abs(values[used]))
+            values[used] *= scales[0][self.places.row] * scales[1][self.places.column]
         return self.places.blocks(values), scales
 
     def sums(self, weights: Any) -> Any:
         """Return the blocks of the sums at many points, weights (parts, points), unscaled, and which are uneven."""
-        values = np.ascontiguousarray(product(self._matrix, weights).T)
-        return self.places.blocks(values), np.abs(values.view(float)).max(axis=1) > UNEVEN
+        values = np.empty(weights.shape[1:] + self._matrix.shape[:1], np.result_type(self._matrix, weights))
+        few = max(1, _CHUNK // len(values.T))
+        for first in range(0, len(values), few):
+            values[first: first + few] = product(self._matrix, weights[:, first: first + few]).T
+        uneven = self._largest @ np.abs(weights) > UNEVEN  # at most
+        if uneven.any():
+            uneven = np.abs(values.view(float)).max(axis=1) > UNEVEN
+        return self.places.blocks(values), uneven
+
+    @cached_property
+    def _largest(self) -> np.ndarray:
+        """The largest modulus in each part (parts,)."""
+        largest = np.zeros(self._matrix.shape[1])
+        np.maximum.at(largest, self._matrix.indices, np.abs(self._matrix.data))
+        return largest
 
     def _scales(self, size: np.ndarray) -> np.ndarray:
         """Powers of two for rows and columns, (2, size), by the sizes of the entries."""
@@ -154,7 +168,7 @@ class Factors:
         self._bottom = bottom[:, : self._interior]
         self._coupled = self._inner.coupled(right)
         self._schur = bottom[:, self._interior:] - self._bottom @ self._coupled
-        self._border = _inverse(self._schur)
+        self._border = _inverse(self._schur) if len(self._schur) else self._schur
 
     def phase(self) -> Any:
         """Return the determinant over its modulus (scales are positive: they leave it alone)."""
@@ -222,17 +236,21 @@ class ManyFactors:
 
     def solve(self, f: Any) -> Any:
         """Return z with M z = f at every point."""
-        f = f.T
-        inner = self._solved(f[:, : self._interior])[..., None]
-        border = self._border @ (f[:, self._interior:, None] - self._bottom @ inner)
-        return np.concatenate([inner - self._coupled @ border, border], axis=1)[..., 0].T
+        inner = self._solved(f[: self._interior].T)
+        if not self._bottom.shape[1]:
+            return inner.T
+        border = self._border @ (f[self._interior:].T[..., None] - self._bottom @ inner[..., None])
+        return np.concatenate([inner - (self._coupled @ border)[..., 0], border[..., 0]], axis=1).T
 
     def solve_left(self, g: np.ndarray) -> np.ndarray:
         """Return z with z^T M = g^T (no conjugation) at every point."""
+        if not self._bottom.shape[1]:
+            return self._solved(g.T, trans=1).T
         inner, border = g.T[:, None, : self._interior], g.T[:, None, self._interior:]
         border = (border - inner @ self._coupled) @ self._border
         inner = self._solved((inner - border @ self._bottom)[:, 0], trans=1)
         return np.concatenate([inner, border[:, 0]], axis=1).T
 
     def _solved(self, right: np.ndarray, trans: int = 0) -> np.ndarray:
+        right = np.ascontiguousarray(right)  # once for all: LAPACK wants vectors so
         return np.array([inner.solve(one, trans) for inner, one in zip(self._inner, right, strict=True)])
