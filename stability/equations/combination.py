@@ -42,7 +42,10 @@ class Combination:
         return np.where(self._where.carriers[(...,) + (None,) * np.ndim(rate)], rate, 1.0)
 
     def factors(self, weights: np.ndarray, rate: Any) -> Any:
-        """Return LU factors of A - rate B for weights (parts,) of the parts, or (parts, points) and rates (points,)."""
+        """Return LU factors of A - rate B for weights (parts,) of the parts, or (parts, points), and rates (points,)."""
+        if np.ndim(rate) > weights.ndim - 1:
+            carriers = self._where.carriers
+            return ManyFactors(self._bordered, np.stack((weights * ~carriers, weights * carriers), axis=1), rate)
         kind = ManyFactors if np.ndim(rate) else Factors
         return kind(self._bordered, weights * self.powers(rate))
 

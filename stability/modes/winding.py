@@ -27,7 +27,7 @@ def winding(solver: Any, degree: Any, k: Any, known: Any, line: Any) -> Any:
 
 def _banded_phases(pencil: Any, weights: np.ndarray, rates: np.ndarray) -> np.ndarray:
     """The determinants at these rates over their moduli, from band factors; but for a sign where it is condensed."""
-    factors = pencil.factors(np.repeat(weights[:, None], len(rates), axis=1), rates)
+    factors = pencil.factors(weights, rates)
     return np.where(factors.uneven, [pencil.factors(weights, rate).phase() if uneven else 0 for rate, uneven in
                                      zip(rates.tolist(), factors.uneven, strict=True)], factors.phases())
 

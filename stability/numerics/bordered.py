@@ -117,10 +117,14 @@ class Bordered:
         few = max(1, _CHUNK // len(values.T))
         for first in range(0, len(values), few):
             values[first: first + few] = product(self._matrix, weights[:, first: first + few]).T
-        uneven = self._largest @ np.abs(weights) > UNEVEN  # at most
-        if uneven.any():
-            uneven = np.abs(values.view(float)).max(axis=1) > UNEVEN
-        return self.places.blocks(values), uneven
+        return self.places.blocks(values), _uneven(values, self._largest @ np.abs(weights))
+
+    def along(self, weights: Any, rates: Any) -> Any:
+        """The `sums` for weights[:, 0] + rate weights[:, 1] at many rates."""
+        start, slope = product(self._matrix, weights).T
+        values = np.multiply.outer(rates, slope)
+        values += start
+        return self.places.blocks(values), _uneven(values, np.abs(start).max() + np.abs(rates) * np.abs(slope).max())
 
     @cached_property
     def _largest(self) -> np.ndarray:
@@ -140,6 +144,13 @@ class Bordered:
             scales[axis] *= factor
             size = size * factor[index]
         return scales
+
+
+def _uneven(values: np.ndarray, bounds: np.ndarray) -> np.ndarray:
+    """Whether values (points, count) are very large; where `bounds` (points,) of them are not, they need no look."""
+    uneven = bounds > UNEVEN
+    uneven[uneven] = np.abs(values[uneven].view(float)).max(axis=1) > UNEVEN
+    return uneven
 
 
 def _inverse(matrix: np.ndarray) -> np.ndarray:
@@ -209,11 +220,11 @@ def phase(diagonal: Any, pivots: Any) -> Any:
 class ManyFactors:
     """The `Factors` at many points, weights (parts, points); right-hand sides are the columns of arrays (size, points).
 
-    `uneven` tells which points need scales, and have none here. What is singular gives numbers that are not finite.
+    Weights (parts, 2) and many rates give those for weights[:, 0] + rate weights[:, 1]. `uneven` tells which points need scales, and have none here. What is singular gives numbers that are not finite.
     """
 
-    def __init__(self, bordered: "Bordered", weights: np.ndarray) -> None:
-        (band, right, bottom), self.uneven = bordered.sums(weights)
+    def __init__(self, bordered: "Bordered", weights: np.ndarray, rates: np.ndarray | None = None) -> None:
+        (band, right, bottom), self.uneven = bordered.sums(weights) if rates is None else bordered.along(weights, rates)
         places = bordered.places
         self._interior, self._inner = places.interior, [places.factors(one) for one in band]
         self._bottom = bottom[..., : self._interior]
