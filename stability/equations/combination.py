@@ -42,7 +42,7 @@ class Combination:
         return np.where(self._where.carriers[(...,) + (None,) * np.ndim(rate)], rate, 1.0)
 
     def factors(self, weights: np.ndarray, rate: Any) -> Any:
-        """Return LU factors of A - rate B for weights (parts,) of the parts, or (parts, points), and rates (points,)."""
+        """Return LU factors of A - rate B for weights (parts,) or (parts, points) of the parts, and rates (points,)."""
         if np.ndim(rate) > weights.ndim - 1:
             carriers = self._where.carriers
             return ManyFactors(self._bordered, np.stack((weights * ~carriers, weights * carriers), axis=1), rate)
