@@ -220,8 +220,8 @@ def phase(diagonal: Any, pivots: Any) -> Any:
 class ManyFactors:
     """The `Factors` at many points, weights (parts, points); right-hand sides are the columns of arrays (size, points).
 
-    Weights (parts, 2) and many rates give those for weights[:, 0] + rate weights[:, 1]. `uneven` tells which points need
-    scales, and have none here. What is singular gives numbers that are not finite.
+    Weights (parts, 2) and many rates give those for weights[:, 0] + rate weights[:, 1]. `uneven` tells which points
+    need scales, and have none here. What is singular gives numbers that are not finite.
     """
 
     def __init__(self, bordered: "Bordered", weights: np.ndarray, rates: np.ndarray | None = None) -> None:
