@@ -34,8 +34,10 @@ _CONFIRMED = 3  # wavenumbers in a row, each a part of the last, at which it mus
 _NO_FARTHER = 1.5, 1e-3  # factor in its distance from the limit that each may have over the one before, and a floor
 _TENDS, _CLOSE = 0.5, 1e-3  # limit of the difference over that at the last of them where a law is wrong; its accuracy
 _GLANCE = 0.3  # relative distance of a rate from a long-wave limit at which a mode that is foreseen may be meant
+_SURE = 0.5  # part of the rounding of one mode that others have as well
 _FEW = 3  # wavenumbers between two nodes that are refined one by one
 _DRIFT = 0.01  # largest relative difference of a refined rate from its interpolation
+_TINY = np.finfo(float).tiny
 _ASTRAY = 0.5  # largest deviation of the overlap with the next node from 1
 
 
@@ -52,6 +54,7 @@ class Branch:
         self._rough = rough or solver.rough(_ROUGH)
         self._walks = {side: Walk(self._rough, start, solver) for side in (1, -1)}
         self._answers: dict[float, Mode] = {}
+        self._rounding = 0.0  # relative, of a mode that was refined: others are much like it
         self.lost = {}
 
     @property
@@ -149,7 +152,7 @@ class Branch:
     def _likely_degree(self, nodes: "list[Mode]", known: "Mode | None") -> int:
         """The degree to try first between nodes."""
         degrees = [self.solver.next_degree(known)] if known else []
-        return max([*degrees, *(self.solver.likely_degree(node) for node in nodes)])
+        return max([*degrees, *(self.solver.likely_degree(node, self._rounding) for node in nodes)])
 
     def _solved(self, k: float, rate: complex, vectors: tuple[int, np.ndarray, np.ndarray],
                 degree: int | None = None) -> "Mode | None":
@@ -165,60 +168,73 @@ class Branch:
                     zip(wavenumbers, intervals(self.segments, wavenumbers), strict=True)}
         gaps: dict[Any, Any] = {}
         wavenumbers = sorted(wavenumbers)
-        for k, (nodes, index) in zip(wavenumbers, intervals(self.segments, wavenumbers), strict=True):
+        places = list(zip(wavenumbers, intervals(self.segments, wavenumbers), strict=True))
+        for k, (nodes, index) in places:
             gaps.setdefault(id(nodes), {}).setdefault(index, (nodes, index, []))[-1].append(k)
+        if not self._rounding:
+            k, (nodes, index) = places[len(places) // 2]
+            mode = self._between(nodes, index, k)
+            self._rounding = 0.0 if isinstance(mode, ModeLost) else _SURE * mode.rounding / abs(mode.sigma)
         found: dict[float, Any] = {}
         for between in gaps.values():
             found |= self._refined(*self._anchored(list(between.values())))
         return found
 
     def _anchored(self, gaps: list[Any]) -> tuple[Any, ...]:
-        """Anchors (mode, degree) of the interpolation in gaps (nodes of the walk, index of the one before, wavenumbers)
-        of one segment, {k: mode} of those that were refined one by one, and the others (k, nodes, index).
+        """Anchors of the interpolation in gaps (nodes of the walk, index of one, wavenumbers behind it) of one segment,
+        {k: mode} of those that were refined one by one, and the others (k, degree or 0, nodes, index).
 
         The nodes of the walk are anchors, where they have nearly as many coefficients as it takes; elsewhere the first
-        wavenumber in each gap and the last are.
+        wavenumber in each gap and the last are, and tell the degree.
         """
         anchors, found, rest = [], {}, []
         for (nodes, index, inside), following in zip(gaps, [*gaps[1:], None], strict=True):
-            ends, degree = nodes[index: index + 2], self._likely_degree(nodes[index: index + 2], None)
-            near = len(ends) == 2 and self._rung(degree) <= min(self._rung(node.degree) for node in ends) + 1
+            ends, likely = nodes[index: index + 2], self._likely_degree(nodes[index: index + 2], None)
+            near = len(ends) == 2 and self._rung(likely) <= min(self._rung(node.degree) for node in ends) + 1
             if near:
                 alone = [k for k in inside[:1] if k == ends[0].k]
-                anchors += [(node, degree) for node in ends[: 1 if following and following[1] == index + 1 else 2]]
+                anchors += ends[: 1 if following and following[1] == index + 1 else 2]
             else:
                 alone = inside if len(inside) <= _FEW else [inside[0]] if following else [inside[0], inside[-1]]
             for k in alone:
-                found[k] = mode = self._between(nodes, index, k, anchors[-1][0] if anchors else None)
-                anchors += [(mode, mode.degree)] if not near and not isinstance(mode, ModeLost) else []
-            rest += [(k, nodes, index) for k in inside if k not in found]
+                found[k] = mode = self._between(nodes, index, k, anchors[-1] if anchors else None)
+                anchors += [mode] if not near and not isinstance(mode, ModeLost) else []
+            degrees = self._degrees(ends, inside, likely) if near else [0] * len(inside)
+            rest += [(k, degree, nodes, index) for k, degree in zip(inside, degrees, strict=True) if k not in found]
         return anchors, found, rest
+
+    def _degrees(self, ends: "list[Mode]", inside: list[float], likely: int) -> list[int]:
+        """The degrees to try between two nodes: theirs as far as truncation, a power of k between, is small enough."""
+        sizes = [log(max(node.truncation / abs(node.sigma), _TINY)) for node in ends]
+        enough = log(max(self.solver.truncation, self._rounding))
+        logs = np.interp(np.log(inside), np.log([node.k for node in ends]), sizes)
+        degree = ends[0].degree if ends[0].degree == ends[1].degree else likely
+        return np.where(logs <= enough, degree, likely).tolist()
 
     def _rung(self, degree: int) -> int:
         return self.solver.degrees.index(degree)
 
-    def _refined(self, anchors: list[Any], found: dict[Any, Any], rest: list[Any]) -> dict[Any, Any]:
-        """{k: mode}, those `found` and each of the `rest` (k, nodes of the walk, index of the one before) next to the
-        interpolation between the `anchors`; what does not settle there is refined alone."""
-        finer = [mode for mode, _ in anchors]
+    def _refined(self, anchors: "list[Mode]", found: dict[Any, Any], rest: list[Any]) -> dict[Any, Any]:
+        """{k: mode}, those `found` and each of the `rest` (k, degree, nodes of the walk, index of one before) next to
+        the interpolation between the `anchors`; what does not settle there is refined alone."""
         batches: dict[int, dict[int, list[Any]]] = {}
-        places = intervals([finer], [k for k, *_ in rest]) if len(finer) > 1 and rest else []
-        for (_, index), (k, *_) in zip(places, rest, strict=False):
-            degree = max(anchors[index][1], anchors[index + 1][1])
+        places = intervals([anchors], [k for k, *_ in rest]) if len(anchors) > 1 and rest else []
+        for (_, index), (k, degree, *_) in zip(places, rest, strict=False):
+            degree = degree or max(node.degree for node in anchors[index: index + 2])
             batches.setdefault(degree, {}).setdefault(index, []).append(k)
         for degree, batch in batches.items():
-            guesses = [interpolated(self.solver, finer, index, np.log(inside), degree)
+            guesses = [interpolated(self.solver, anchors, index, np.log(inside), degree)
                        for index, inside in batch.items()]
             rates, *vectors = (np.concatenate(parts) for parts in zip(*guesses, strict=True))
             wavenumbers = [k for inside in batch.values() for k in inside]
-            nodes = [finer[index] for index, inside in batch.items() for _ in inside]
+            nodes = [anchors[index] for index, inside in batch.items() for _ in inside]
             settled = self._settled(wavenumbers, rates, vectors, degree, nodes)
             for index, inside in batch.items():
                 first = settled.get(inside[0])
-                if first and abs(self.solver.overlap(finer[index], first) - 1) < _ASTRAY:
+                if first and abs(self.solver.overlap(anchors[index], first) - 1) < _ASTRAY:
                     found |= {k: settled[k] for k in inside if k in settled}
-        last = finer[-1] if finer else None
-        return found | {k: self._between(nodes, index, k, last) for k, nodes, index in rest if k not in found}
+        last = anchors[-1] if anchors else None
+        return found | {k: self._between(nodes, index, k, last) for k, _, nodes, index in rest if k not in found}
 
     def _settled(self, wavenumbers: list[float], rates: np.ndarray, vectors: Any, degree: int,
                  nodes: "list[Mode]") -> "dict[float, Mode]":

@@ -215,10 +215,14 @@ class Solver:
         least *= self.assembly.system.structure.stride
         return next((degree for degree in self.degrees if degree >= least), self.degrees[-1])
 
-    def likely_degree(self, mode: Mode) -> int:
+    def likely_degree(self, mode: Mode, rounding: float = 0.0) -> int:
         """The degree to try first where this solver, or a rougher one, has found a mode: a higher one if its own is too
-        low, the last that is no larger than where its error is small enough if its series fall on as they do."""
-        if self.fits(mode):
+        low, the last that is no larger than where its error is small enough if its series fall on as they do.
+
+        `rounding` is what is known of it, relative to sigma: rougher solvers do not tell.
+        """
+        enough = max(mode.rounding, max(self.truncation, rounding) * abs(mode.sigma), _TINY)
+        if mode.truncation <= enough:
             return mode.degree
         rung = min(self.degrees.index(mode.degree) + 1, len(self.degrees) - 1)
         layout = self.pencil(mode.degree).layout
@@ -226,11 +230,11 @@ class Solver:
         sizes = np.log(shares.sum(axis=1))
         fall, faster = sizes[1] - sizes[2], max(2 * sizes[1] - sizes[0] - sizes[2], 0.0) / 2  # half: falls are uneven
         if fall > 0:  # from here on by fall + faster, fall + 2 faster ...
-            excess = log(mode.truncation / max(mode.rounding, self.truncation * abs(mode.sigma), _TINY))
+            excess = log(mode.truncation / enough)
             fall += faster / 2
             steps = 2 * excess / (fall + (fall**2 + 2 * faster * excess) ** 0.5)
-            enough = min(2 * mode.degree, mode.degree + layout.structure.stride * layout.ends.shape[2] * steps)
-            rung = max(rung, int(np.searchsorted(self.degrees, enough, side="right")) - 1)
+            reach = min(2 * mode.degree, mode.degree + layout.structure.stride * layout.ends.shape[2] * steps)
+            rung = max(rung, int(np.searchsorted(self.degrees, reach, side="right")) - 1)
         return self.degrees[rung]
 
     def solve_many(self, wavenumbers: list[float], rates: np.ndarray | None, vectors: list[np.ndarray],
