@@ -17,6 +17,7 @@ series are; what it takes to form S then pays at many wavenumbers.
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -53,6 +54,19 @@ def _outright(field: str, terms: Any) -> bool:
     """Whether an equation gives a field: its slope stands alone, as residuals have it, and the field nowhere else."""
     slopes = [(unknown, monomial, tuple(support)) for unknown, monomial, support in terms if unknown.endswith("'")]
     return slopes == [(f"{field}'", (), (0,))] and field not in (unknown for unknown, *_ in terms)
+
+
+def sparing(layout: "Layout") -> bool:
+    """Whether a layout is condensed and the rate is then in half of the equations that have it.
+
+    That is so where the equations of v do without n, which brings the rate along.
+    """
+    structure = layout.structure
+    fields = [unknown.rpartition(".")[2] for unknown in structure.unknowns[:structure.fields]]
+    free = [row for row, field in zip(structure.rows, fields, strict=False) if field == FIELDS[0]]
+    return condensable(layout) and not any(
+        "rate" in monomial or unknown.rpartition(".")[2].strip("'") == FIELDS[_GIVEN[1]] for row in free
+        for unknown, monomial, _ in row.terms)
 
 
 class Groups:
@@ -112,7 +126,6 @@ class Arrangement:
         self.columns = Lines(part[self.in_columns], row[self.in_columns], where[column[self.in_columns]], count,
                              (layout.size, len(self.given_columns)))
         self._place(part, row, column)
-        self._reduced: Reduced | None = None
 
     def _place(self, part: np.ndarray, row: np.ndarray, column: np.ndarray) -> None:
         """Full blocks for every pair of groups and part: where they begin, and which entries add to them."""
@@ -134,28 +147,23 @@ class Arrangement:
         flat = self._sum @ value
         yield from ((key, flat[where].reshape(shape)) for key, where, shape in self._blocks)
 
-    def any_value(self) -> np.ndarray:
-        """Values of entries in the layout none of which, nor of their products, is 0 by chance."""
-        return 1 + np.random.default_rng(1).random(self._sum.shape[1])
-
-    def reduced(self, keys: list[Key]) -> "Reduced":
-        """Where the entries of S lie, blocks with these keys: the same for all pencils."""
-        if self._reduced is None or self._reduced.keys != keys:
-            self._reduced = Reduced(self, keys)
-        return self._reduced
+    @cached_property
+    def reduced(self) -> "Reduced":
+        """Where the entries of S lie, of all pencils: told by one whose values and products are not 0 by chance."""
+        return Reduced(self, _condensed(self, 1 + np.random.default_rng(1).random(self._sum.shape[1])))
 
 
 class Reduced:
-    """Where the entries of condensed pencils lie, blocks with these `keys` one after the other, row by row.
+    """Where the entries of condensed pencils lie, `blocks` like those of one of them one after the other, row by row.
 
     `factors` (parts, 3) are the parts of the pencil whose product is a part of S, a number beyond them standing for 1;
     parts from `first_b` on have the rate. `entries` are those of the blocks, one behind the other, that are not 0
     by structure; `stack`, `places` and `b` tell where they, those of the bordered matrix and those with the rate,
-    `carrying`, lie.
+    `carrying`, lie. The rate is in `rate_rows` of the `size`.
     """
 
-    def __init__(self, arrangement: Arrangement, keys: list[Key]) -> None:
-        self.keys, structure, groups = keys, arrangement.structure, arrangement.groups
+    def __init__(self, arrangement: Arrangement, blocks: dict[Key, np.ndarray]) -> None:
+        structure, groups, keys = arrangement.structure, arrangement.groups, list(blocks)
         names = {product: tuple(sorted(name for one in product for name in structure.parts[one]))
                  for *_, product in keys}
         parts = sorted(set(names.values()), key=lambda names: ("rate" in names, names))
@@ -164,7 +172,7 @@ class Reduced:
         products = [next(product for product, name in names.items() if name == one) for one in parts]
         most = max(map(len, products))
         self.factors = np.array([[*one, *[len(structure.parts)] * (most - len(one))] for one in products])
-        pattern = [block != 0 for block in _condensed(arrangement, arrangement.any_value()).values()]
+        pattern = [block != 0 for block in blocks.values()]
         self.entries = np.flatnonzero(np.concatenate([block.ravel() for block in pattern]))
         rows_of = groups.within(groups.row, arrangement.kept_rows)
         columns_of = groups.within(groups.column, arrangement.kept_columns)
@@ -175,7 +183,8 @@ class Reduced:
         size, border = len(arrangement.kept_rows), int(groups.sizes[-1])
         self.stack = Lines(part, rows, columns, len(parts), (size, size))
         self.places = whole(part, rows, columns, len(parts), size - border, border)
-        self.carrying = np.flatnonzero(part >= self.first_b)
+        self.size, self.carrying = size, np.flatnonzero(part >= self.first_b)
+        self.rate_rows = np.unique(rows[self.carrying])
         self.b = Lines(part[self.carrying], rows[self.carrying], columns[self.carrying], len(parts), (size, size))
 
 
@@ -183,14 +192,15 @@ class Condensed(Combination):
     """The condensed form S of a pencil whose entries in the layout have these values.
 
     It has the `stack`, `powers`, `factors`, `b_products` and `arithmetic` of a pencil, for weights of its own parts;
-    `sides` are the first without and the first with the rate.
+    `sides` are the first without and the first with the rate, which is in `rate_rows` of the `size`.
     """
 
     def __init__(self, arrangement: Arrangement, value: np.ndarray) -> None:
         self._arrangement = arrangement
         blocks = _condensed(arrangement, value)
-        self._where = arrangement.reduced(list(blocks))
+        self._where = arrangement.reduced
         self.first_b, self.sides = self._where.first_b, self._where.sides
+        self.size, self.rate_rows = self._where.size, self._where.rate_rows
         self._value = np.concatenate([block.ravel() for block in blocks.values()])[self._where.entries]
         self._carried = self._value[self._where.carrying]
         self._rows = Stack(arrangement.rows, value[arrangement.in_rows])

@@ -237,20 +237,23 @@ class Pencil(Combination):
     def condensed(self) -> Condensed | None:
         """The same eigenproblem with half the unknowns, where that pays even for a single eigenvalue."""
         full = isinstance(self.layout.places, Blocks) and _CONDENSED[0] <= self.degree <= _CONDENSED[1]
-        return self._condensed if full else None
+        return self.shortened if full else None
 
     @cached_property
-    def _condensed(self) -> Condensed | None:
+    def shortened(self) -> Condensed | None:
+        """The same eigenproblem with half the unknowns, whether that pays or not; None where there is none."""
         arrangement = self.layout.arrangement
         return Condensed(arrangement, self._value) if arrangement else None
 
     def condensed_for(self, points: int) -> Condensed | None:
-        """The `condensed` form where it pays for eigenvalues at so many points: compiled code gains nothing from it."""
-        if library():
-            return self.condensed
+        """The `condensed` form where it pays for factors at so many points."""
         terms = self.degree // self.layout.structure.stride
-        worthwhile = "_condensed" in vars(self) or points * terms > _MANY[0] + _MANY[1] * terms**3
-        return self._condensed if worthwhile else self.condensed
+        worthwhile = "shortened" in vars(self) or points * terms > _MANY[0] + _MANY[1] * terms**3
+        return self.shortened if worthwhile else self.condensed
+
+    def iterated(self, points: int) -> Condensed | None:
+        """The `condensed` form where it pays for eigenvalues at so many points: compiled code gains nothing from it."""
+        return self.condensed if library() else self.condensed_for(points)
 
     @property
     def _where(self) -> Layout:  # type: ignore[override]

@@ -245,7 +245,7 @@ class Solver:
         the quotients of the vectors are.
         """
         modes, (x, y), pencil = [], vectors, self.pencil(degree)
-        entries = (pencil.condensed_for(len(wavenumbers)) or pencil).entries
+        entries = (pencil.iterated(len(wavenumbers)) or pencil).entries
         count = max(1, min(_TOGETHER[0], _TOGETHER[1] // entries))
         for first in range(0, len(wavenumbers), count):
             part = slice(first, first + count)

@@ -54,6 +54,10 @@ class Eigen(NamedTuple):
     y: np.ndarray
     settled: np.ndarray
 
+    def widened(self, by: Any) -> "Eigen":
+        """Return the same with a larger spread."""
+        return self._replace(spread=self.spread + by)
+
     def split(self) -> "list[Eigen]":
         """Return the eigenvalues of the points, each on its own."""
         columns = [values.tolist() if values.ndim == 1 else values for values in self]  # plain numbers are cheaper
@@ -92,7 +96,7 @@ def refine_many(pencil: Any, weights: Any, rate: np.ndarray | None, x: np.ndarra
     Without `bars` the rounding is left at 0: a rough look does not need it. Without a rate the quotient of the vectors
     is the guess.
     """
-    inner, own, x, y = _inside(pencil.condensed_for(len(x)), pencil, weights, x.T, y.conj().T)
+    inner, own, x, y = _inside(pencil.iterated(len(x)), pencil, weights, x.T, y.conj().T)
     arithmetic = inner.arithmetic
     if rate is None:
         rate = _rate(inner, own.value * arithmetic.brackets(x, y))
@@ -140,7 +144,7 @@ def _twice(pencil: Any, weights: Any, found: "Eigen", bars: bool) -> "Eigen":
     other modes are too near, it stays as it was found.
     """
     again = _corrected(pencil, weights, found, bars)
-    return again._replace(spread=again.spread + abs(again.rate - found.rate)) if again.settled else found
+    return again.widened(abs(again.rate - found.rate)) if again.settled else found
 
 
 def _corrected(pencil: Any, weights: Any, found: "Eigen", bars: bool) -> "Eigen":

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from stability import dispersion, spectrum
-from stability.equations.condensed import condensable
+from stability.equations.condensed import condensable, sparing
 from stability.equations.pencil import Weights
 from stability.flows import Dune, Film, Plate, Poiseuille, Regularised, RollWave, Saturating, TwoLayerCouette, Vortex
+from stability.modes import dense
 from stability.modes.solver import Solver
 
 FLOWS = {"creeping": Dune(law=Regularised()), "yielding": Dune(shields=1.5, law=Saturating()),
@@ -70,6 +71,22 @@ def test_bands_stay_bands(flow):
     condensed = pencil.condensed_for(200)
     assert condensed.entries < 0.75 * pencil.entries
     assert pencil.condensed_for(1) is condensed  # once they are there
+
+
+@pytest.mark.parametrize("flow", BANDS.values(), ids=BANDS)
+def test_all_eigenvalues(monkeypatch, flow):
+    """The dense problem of the condensed form, where that has the rate in half of the rows, has the same ones."""
+    solver = Solver(flow)
+    symbols, layout = solver.symbols(1.3), solver.pencil(24).layout
+    newtonian = type(flow).__name__ not in ("Dune", "RollWave")
+    assert sparing(layout) == newtonian
+    fewer, rows = len(layout.arrangement.reduced.rate_rows), len(layout.rate_rows)
+    assert (fewer < 0.6 * rows) == newtonian
+    condensed = dense.finite_rates(solver, 24, symbols)
+    monkeypatch.setattr(dense, "sparing", lambda layout: False)
+    whole = dense.finite_rates(solver, 24, symbols)
+    assert len(condensed) == len(whole)
+    np.testing.assert_allclose(condensed[:5], whole[:5], rtol=1e-9)
 
 
 def test_where_it_is_not_formed():
