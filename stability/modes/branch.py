@@ -35,6 +35,7 @@ _NO_FARTHER = 1.5, 1e-3  # factor in its distance from the limit that each may h
 _TENDS, _CLOSE = 0.5, 1e-3  # limit of the difference over that at the last of them where a law is wrong; its accuracy
 _GLANCE = 0.3  # relative distance of a rate from a long-wave limit at which a mode that is foreseen may be meant
 _SURE = 0.5  # part of the rounding of one mode that others have as well
+_BESIDE = 1 + 1e-9  # factor of a rate where its matrix is not singular, if it is one of a little larger degree
 _FEW = 3  # wavenumbers between two nodes that are refined one by one
 _DRIFT = 0.01  # largest relative difference of a refined rate from its interpolation
 _TINY = np.finfo(float).tiny
@@ -152,7 +153,7 @@ class Branch:
     def _likely_degree(self, nodes: "list[Mode]", known: "Mode | None") -> int:
         """The degree to try first between nodes."""
         degrees = [self.solver.next_degree(known)] if known else []
-        return max([*degrees, *(self.solver.likely_degree(node, self._rounding) for node in nodes)])
+        return max([*degrees, *(self.solver.likely_degree(node) for node in nodes)])
 
     def _solved(self, k: float, rate: complex, vectors: tuple[int, np.ndarray, np.ndarray],
                 degree: int | None = None) -> "Mode | None":
@@ -162,84 +163,67 @@ class Branch:
             return None
 
     def _together(self, wavenumbers: list[float]) -> "dict[float, Mode]":
-        """Modes at many wavenumbers, next to the interpolation between anchors; at a few, one by one."""
-        if len(wavenumbers) <= _FEW:
-            return {k: self._between(nodes, index, k) for k, (nodes, index) in
-                    zip(wavenumbers, intervals(self.segments, wavenumbers), strict=True)}
-        gaps: dict[Any, Any] = {}
+        """Modes at many wavenumbers, next to the interpolation between the nodes of the walk; at a few, one by one."""
         wavenumbers = sorted(wavenumbers)
         places = list(zip(wavenumbers, intervals(self.segments, wavenumbers), strict=True))
+        found: dict[float, Any] = self._interpolating(places) if len(places) > _FEW else {}
+        last = None
         for k, (nodes, index) in places:
-            gaps.setdefault(id(nodes), {}).setdefault(index, (nodes, index, []))[-1].append(k)
+            mode = found[k] = found.get(k) or self._between(nodes, index, k, last)
+            last = last if isinstance(mode, ModeLost) else mode
+        return found
+
+    def _interpolating(self, places: list[Any]) -> "dict[float, Mode]":
+        """{k: mode} of what settles next to the interpolation, at `places` (k, (nodes of the walk, index of the one
+        before)), all that take the same degree together."""
         if not self._rounding:
             k, (nodes, index) = places[len(places) // 2]
             mode = self._between(nodes, index, k)
             self._rounding = 0.0 if isinstance(mode, ModeLost) else _SURE * mode.rounding / abs(mode.sigma)
-        found: dict[float, Any] = {}
-        for between in gaps.values():
-            found |= self._refined(*self._anchored(list(between.values())))
+        gaps: dict[Any, Any] = {}
+        for k, (nodes, index) in places:
+            if len(nodes) > 1 and k != nodes[index].k:
+                gaps.setdefault((id(nodes), index), (nodes, index, []))[-1].append(k)
+        batches: dict[int, list[Any]] = {}
+        for nodes, index, inside in gaps.values():
+            degrees = self._degrees(nodes[index: index + 2], inside)
+            for degree in dict.fromkeys(degrees):
+                some = [k for k, own in zip(inside, degrees, strict=True) if own == degree]
+                batches.setdefault(degree, []).append((nodes, index, some))
+        found: dict[float, Mode] = {}
+        for degree, batch in batches.items():
+            found |= self._refined(degree, batch)
         return found
 
-    def _anchored(self, gaps: list[Any]) -> tuple[Any, ...]:
-        """Anchors of the interpolation in gaps (nodes of the walk, index of one, wavenumbers behind it) of one segment,
-        {k: mode} of those that were refined one by one, and the others (k, degree or 0, nodes, index).
-
-        The nodes of the walk are anchors, where they have nearly as many coefficients as it takes; elsewhere the first
-        wavenumber in each gap and the last are, and tell the degree.
-        """
-        anchors, found, rest = [], {}, []
-        for (nodes, index, inside), following in zip(gaps, [*gaps[1:], None], strict=True):
-            ends, likely = nodes[index: index + 2], self._likely_degree(nodes[index: index + 2], None)
-            near = len(ends) == 2 and self._rung(likely) <= min(self._rung(node.degree) for node in ends) + 1
-            if near:
-                alone = [k for k in inside[:1] if k == ends[0].k]
-                anchors += ends[: 1 if following and following[1] == index + 1 else 2]
-            else:
-                alone = inside if len(inside) <= _FEW else [inside[0]] if following else [inside[0], inside[-1]]
-            for k in alone:
-                found[k] = mode = self._between(nodes, index, k, anchors[-1] if anchors else None)
-                anchors += [mode] if not near and not isinstance(mode, ModeLost) else []
-            degrees = self._degrees(ends, inside, likely) if near else [0] * len(inside)
-            rest += [(k, degree, nodes, index) for k, degree in zip(inside, degrees, strict=True) if k not in found]
-        return anchors, found, rest
-
-    def _degrees(self, ends: "list[Mode]", inside: list[float], likely: int) -> list[int]:
+    def _degrees(self, ends: "list[Mode]", inside: list[float]) -> list[int]:
         """The degrees to try between two nodes: theirs as far as truncation, a power of k between, is small enough."""
-        sizes = [log(max(node.truncation / abs(node.sigma), _TINY)) for node in ends]
-        enough = log(max(self.solver.truncation, self._rounding))
-        logs = np.interp(np.log(inside), np.log([node.k for node in ends]), sizes)
-        degree = ends[0].degree if ends[0].degree == ends[1].degree else likely
-        return np.where(logs <= enough, degree, likely).tolist()
+        likely = self._likely_degree(ends, None)
+        if ends[0].degree != ends[1].degree or likely == ends[0].degree:
+            return [likely] * len(inside)
+        sizes = np.interp(np.log(inside), np.log([node.k for node in ends]),
+                          [log(max(node.truncation / abs(node.sigma), _TINY)) for node in ends])
+        return np.where(sizes <= log(max(self.solver.truncation, self._rounding)), ends[0].degree, likely).tolist()
 
-    def _rung(self, degree: int) -> int:
-        return self.solver.degrees.index(degree)
+    def _refined(self, degree: int, batch: list[Any]) -> "dict[float, Mode]":
+        """{k: mode} of what settles at this degree, or the one it takes, next to the interpolation; of gaps (nodes of
+        the walk, index of one, wavenumbers behind it) where that is the mode of the node before."""
+        guesses = [interpolated(self.solver, nodes, index, np.log(inside), degree) for nodes, index, inside in batch]
+        rates, *vectors = (np.concatenate(parts) for parts in zip(*guesses, strict=True))
+        wavenumbers = [k for *_, inside in batch for k in inside]
+        before = [nodes[index] for nodes, index, inside in batch for _ in inside]
+        least = min(node.degree for nodes, index, _ in batch for node in nodes[index: index + 2])
+        settled, found = self._settled(wavenumbers, rates, vectors, degree, before, least), {}
+        for nodes, index, inside in batch:
+            first = settled.get(inside[0])
+            if first and abs(self.solver.overlap(nodes[index], first) - 1) < _ASTRAY:
+                found |= {k: settled[k] for k in inside if k in settled}
+        return found
 
-    def _refined(self, anchors: "list[Mode]", found: dict[Any, Any], rest: list[Any]) -> dict[Any, Any]:
-        """{k: mode}, those `found` and each of the `rest` (k, degree, nodes of the walk, index of one before) next to
-        the interpolation between the `anchors`; what does not settle there is refined alone."""
-        batches: dict[int, dict[int, list[Any]]] = {}
-        places = intervals([anchors], [k for k, *_ in rest]) if len(anchors) > 1 and rest else []
-        for (_, index), (k, degree, *_) in zip(places, rest, strict=False):
-            degree = degree or max(node.degree for node in anchors[index: index + 2])
-            batches.setdefault(degree, {}).setdefault(index, []).append(k)
-        for degree, batch in batches.items():
-            guesses = [interpolated(self.solver, anchors, index, np.log(inside), degree)
-                       for index, inside in batch.items()]
-            rates, *vectors = (np.concatenate(parts) for parts in zip(*guesses, strict=True))
-            wavenumbers = [k for inside in batch.values() for k in inside]
-            nodes = [anchors[index] for index, inside in batch.items() for _ in inside]
-            settled = self._settled(wavenumbers, rates, vectors, degree, nodes)
-            for index, inside in batch.items():
-                first = settled.get(inside[0])
-                if first and abs(self.solver.overlap(anchors[index], first) - 1) < _ASTRAY:
-                    found |= {k: settled[k] for k in inside if k in settled}
-        last = anchors[-1] if anchors else None
-        return found | {k: self._between(nodes, index, k, last) for k, _, nodes, index in rest if k not in found}
-
-    def _settled(self, wavenumbers: list[float], rates: np.ndarray, vectors: Any, degree: int,
-                 nodes: "list[Mode]") -> "dict[float, Mode]":
-        """{k: mode} of what settles near its guess, `nodes` being those before, at this degree or the one it takes."""
-        modes = self.solver.solve_many(wavenumbers, rates, vectors, degree)
+    def _settled(self, wavenumbers: list[float], rates: np.ndarray, vectors: Any, degree: int, nodes: "list[Mode]",
+                 known: int) -> "dict[float, Mode]":
+        """{k: mode} of what settles near its guess, at this degree or the one it takes, with `nodes` before; the
+        vectors have coefficients up to the degree `known`."""
+        modes = self.solver.solve_many(wavenumbers, rates, vectors, degree, known)
         near = [one for one in zip(wavenumbers, modes, nodes, rates, strict=True) if one[1] and _near(*one[1:])]
         found, lacking = {}, {}
         for k, mode, node, _ in near:
@@ -249,9 +233,9 @@ class Branch:
                 lacking.setdefault(self.solver.likely_degree(mode), []).append((mode, node))
         for higher, pairs in lacking.items():
             again = [transfer(self.solver, (degree, mode.x, mode.y), higher) for mode, _ in pairs]
-            found |= self._settled([mode.k for mode, _ in pairs], np.array([mode.rate for mode, _ in pairs]),
+            found |= self._settled([mode.k for mode, _ in pairs], np.array([mode.rate * _BESIDE for mode, _ in pairs]),
                                    [np.array(rows) for rows in zip(*again, strict=True)], higher,
-                                   [node for _, node in pairs])
+                                   [node for _, node in pairs], degree)
         return found
 
 

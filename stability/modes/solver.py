@@ -193,9 +193,8 @@ class Solver:
         while True:
             pencil = self.pencil(degree)
             x, y = transfer(self, vectors, degree) if vectors else (None, None)
-            leap = vectors and self.degrees.index(degree) > self.degrees.index(vectors[0]) + 1
-            accuracy = self.vectors * (_LEAP if leap else 1.0)
-            eigen = refine(pencil, self.weights(k), rate, x, y, self.bars, accuracy)
+            eigen = refine(pencil, self.weights(k), rate, x, y, self.bars,
+                           self._accuracy(vectors[0] if vectors else degree, degree))
             mode = self._mode(k, degree, eigen)
             if glance or degree == self.degrees[-1] or self.fits(mode):
                 return mode
@@ -215,13 +214,10 @@ class Solver:
         least *= self.assembly.system.structure.stride
         return next((degree for degree in self.degrees if degree >= least), self.degrees[-1])
 
-    def likely_degree(self, mode: Mode, rounding: float = 0.0) -> int:
+    def likely_degree(self, mode: Mode) -> int:
         """The degree to try first where this solver, or a rougher one, has found a mode: a higher one if its own is too
-        low, the last that is no larger than where its error is small enough if its series fall on as they do.
-
-        `rounding` is what is known of it, relative to sigma: rougher solvers do not tell.
-        """
-        enough = max(mode.rounding, max(self.truncation, rounding) * abs(mode.sigma), _TINY)
+        low, the last that is no larger than where its error is small enough if its series fall on as they do."""
+        enough = max(mode.rounding, self.truncation * abs(mode.sigma), _TINY)
         if mode.truncation <= enough:
             return mode.degree
         rung = min(self.degrees.index(mode.degree) + 1, len(self.degrees) - 1)
@@ -237,12 +233,16 @@ class Solver:
             rung = max(rung, int(np.searchsorted(self.degrees, reach, side="right")) - 1)
         return self.degrees[rung]
 
+    def _accuracy(self, known: int, degree: int) -> float:
+        """Of vectors, where coefficients up to the degree `known` are the guess."""
+        return self.vectors * (_LEAP if self.degrees.index(degree) > self.degrees.index(known) + 1 else 1.0)
+
     def solve_many(self, wavenumbers: list[float], rates: np.ndarray | None, vectors: list[np.ndarray],
-                   degree: int) -> list[Any]:
+                   degree: int, known: int | None = None) -> list[Any]:
         """Return the modes at many wavenumbers at once, at this degree, None where the iteration does not settle.
 
         `rates` (points,) and right and left `vectors` (points, size) of this degree are good guesses. Without rates
-        the quotients of the vectors are.
+        the quotients of the vectors are. Coefficients beyond the degree `known` are none, if that is given.
         """
         modes, (x, y), pencil = [], vectors, self.pencil(degree)
         entries = (pencil.iterated(len(wavenumbers)) or pencil).entries
@@ -251,7 +251,7 @@ class Solver:
             part = slice(first, first + count)
             eigen = refine_many(pencil, self.weights(wavenumbers[part]),
                                 None if rates is None else rates[part],
-                                x[part], y[part], self.bars, self.vectors)
+                                x[part], y[part], self.bars, self._accuracy(known or degree, degree))
             found = [self._mode(k, degree, one) for k, one in zip(wavenumbers[part], eigen.split(), strict=True)]
             modes += [mode if settled else None for mode, settled in zip(found, eigen.settled, strict=True)]
         return modes
