@@ -38,9 +38,9 @@ _TENDS, _CLOSE = 0.5, 1e-3  # limit of the difference over that at the last of t
 _GLANCE = 0.3  # relative distance of a rate from a long-wave limit at which a mode that is foreseen may be meant
 _SURE = 0.5  # part of the rounding of one mode that others have as well
 _BESIDE = 1 + 1e-9  # factor of a rate where its matrix is not singular, if it is one of a little larger degree
+_RISE = 0.9  # of the rise of a degree that is foreseen: what is needed is mostly a little less (measured)
 _FEW = 3  # wavenumbers between two nodes that are refined one by one
 _DRIFT = 0.01  # largest relative difference of a refined rate from its interpolation
-_TINY = np.finfo(float).tiny
 _ASTRAY = 0.5  # largest deviation of the overlap with the next node from 1
 
 
@@ -205,13 +205,11 @@ class Branch:
         return found
 
     def _degrees(self, ends: "list[Mode]", inside: list[float]) -> list[int]:
-        """The degrees to try between two nodes: theirs as far as truncation, a power of k between, is small enough."""
-        likely = self._likely_degree(ends, None)
-        if ends[0].degree != ends[1].degree or likely == ends[0].degree:
-            return [likely] * len(inside)
-        sizes = np.interp(np.log(inside), np.log([node.k for node in ends]),
-                          [log(max(node.truncation / abs(node.sigma), _TINY)) for node in ends])
-        return np.where(sizes <= log(max(self.solver.truncation, self._rounding)), ends[0].degree, likely).tolist()
+        """The degrees to try between two nodes, as long as what either needs lets expect."""
+        needs = [node.degree + _RISE * (self.solver.needed(node, self._rounding) - node.degree) for node in ends]
+        needed = np.interp(np.log(inside), np.log([node.k for node in ends]), needs)
+        rungs = np.searchsorted(self.solver.degrees, np.maximum(needed, min(node.degree for node in ends)))
+        return np.array(self.solver.degrees)[np.minimum(rungs, len(self.solver.degrees) - 1)].tolist()
 
     def _refined(self, degree: int, batch: list[Any]) -> "dict[float, Mode]":
         """{k: mode} of what settles at this degree, or the one it takes, next to the interpolation; of gaps (nodes of

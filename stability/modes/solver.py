@@ -217,21 +217,25 @@ class Solver:
     def likely_degree(self, mode: Mode) -> int:
         """The degree to try first where this solver, or a rougher one, has found a mode: a higher one if its own is too
         low, the last that is no larger than where its error is small enough if its series fall on as they do."""
-        enough = max(mode.rounding, self.truncation * abs(mode.sigma), _TINY)
-        if mode.truncation <= enough:
+        if self.fits(mode):
             return mode.degree
         rung = min(self.degrees.index(mode.degree) + 1, len(self.degrees) - 1)
+        return self.degrees[max(rung, int(np.searchsorted(self.degrees, self.needed(mode), side="right")) - 1)]
+
+    def needed(self, mode: Mode, rounding: float = 0.0) -> float:
+        """The degree, between rungs, at which the error of a mode is just small enough if its series fall on as they
+        do; `rounding` is what is known of that, relative to sigma: rougher solvers do not tell."""
+        excess = log(max(mode.truncation, _TINY) /
+                     max(mode.rounding, max(self.truncation, rounding) * abs(mode.sigma), _TINY))
         layout = self.pencil(mode.degree).layout
         shares = np.abs(mode.x[layout.ends]).sum(axis=2) * np.abs(mode.y[layout.last]).max(axis=1)  # of the truncation
         sizes = np.log(shares.sum(axis=1))
         fall, faster = sizes[1] - sizes[2], max(2 * sizes[1] - sizes[0] - sizes[2], 0.0) / 2  # half: falls are uneven
-        if fall > 0:  # from here on by fall + faster, fall + 2 faster ...
-            excess = log(mode.truncation / enough)
-            fall += faster / 2
-            steps = 2 * excess / (fall + (fall**2 + 2 * faster * excess) ** 0.5)
-            reach = min(2 * mode.degree, mode.degree + layout.structure.stride * layout.ends.shape[2] * steps)
-            rung = max(rung, int(np.searchsorted(self.degrees, reach, side="right")) - 1)
-        return self.degrees[rung]
+        if fall <= 0:
+            return mode.degree + float(excess > 0)
+        fall += faster / 2  # from here on by fall + faster, fall + 2 faster ...
+        steps = 2 * excess / (fall + max(fall**2 + 2 * faster * excess, 0.0) ** 0.5)
+        return min(2.0 * mode.degree, mode.degree + layout.structure.stride * layout.ends.shape[2] * steps)
 
     def _accuracy(self, known: int, degree: int) -> float:
         """Of vectors, where coefficients up to the degree `known` are the guess."""

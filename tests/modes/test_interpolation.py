@@ -62,9 +62,9 @@ def test_what_needs_more_coefficients_is_refined_again_together(monkeypatch):
     branch = surface_branch(Solver(flows.Dune()))
     alone, together = [], []
     between, many = branch._between, branch.solver.solve_many
-    monkeypatch.setattr(type(branch), "_likely_degree", lambda *_: 14)
+    monkeypatch.setattr(branch.solver, "needed", lambda *_: 14.0)
     monkeypatch.setattr(branch, "_between", lambda *question: alone.append(question) or between(*question))
-    monkeypatch.setattr(branch.solver, "solve_many", lambda *question: together.append(question[-1]) or many(*question))
+    monkeypatch.setattr(branch.solver, "solve_many", lambda *question: together.append(question[3]) or many(*question))
     found, lost = branch.at(k)
     assert not lost
     assert set(together) > {14}
@@ -73,6 +73,18 @@ def test_what_needs_more_coefficients_is_refined_again_together(monkeypatch):
         assert abs(found[mode.k].sigma - mode.sigma) <= found[mode.k].error + mode.error
         assert branch.solver.fits(found[mode.k])
     memory.forget()
+
+
+@pytest.mark.parametrize("flow", [flows.Dune(), flows.Vortex(), flows.Film()], ids=lambda flow: flow.name)
+def test_degrees_that_are_needed_are_foreseen(flow):
+    """From rough modes, which have few coefficients: mostly a little too many."""
+    solver = Solver(flow)
+    branch = surface_branch(solver)
+    branch.reach(4.0)
+    for rough in [mode for mode in branch.segments[0] if mode.k > 0.1]:
+        foreseen = rough.degree + 0.9 * (solver.needed(rough, 2e-15) - rough.degree)
+        fits = solver.refined(rough).degree
+        assert 0.75 * fits < foreseen < 1.3 * fits
 
 
 def test_a_gap_in_which_another_mode_is_met_is_done_one_by_one(monkeypatch):
