@@ -116,8 +116,9 @@ class Layout:
         equations, conditions = structure.rows[:structure.equations], len(structure.rows) - structure.equations
         extra = np.array([equation.extra for equation in equations])
         used = np.zeros((len(structure.unknowns), width), bool)
-        for unknown, first in enumerate(structure.first):
-            used[unknown, first:: structure.stride] = True
+        self.degrees = np.repeat(structure.degrees(self.degree), len(FIELDS)).tolist()
+        for unknown, (first, degree) in enumerate(zip(structure.first, self.degrees, strict=True)):
+            used[unknown, first: degree + 1: structure.stride] = True
         used[structure.fields:, 0] = True
         field, j = np.nonzero(used[: structure.fields])
         opposite = j >= 1 - extra[field]
@@ -145,8 +146,8 @@ class Layout:
         """Tell apart the rows of each equation, and number those beyond the degree."""
         structure, tails = self.structure, np.arange(-(-self.table.tail // self.structure.stride))
         self.rows, self.tails = {"conditions": rows[len(equations):, 0]}, len(tails) * len(equations)
-        for i, (equation, first) in enumerate(zip(equations, structure.first, strict=True)):
-            orders = np.arange(structure.stride - 1 - first, self.degree + equation.extra, structure.stride)
+        for i, (equation, first, degree) in enumerate(zip(equations, structure.first, self.degrees, strict=True)):
+            orders = np.arange(structure.stride - 1 - first, degree + equation.extra, structure.stride)
             self.orders[equation.name], self.rows[equation.name] = orders, rows[i, orders]
             rows[i, orders[-1] + structure.stride * (1 + tails)] = self.size + i * len(tails) + tails
         self.last = np.array([self.rows[equation.name][-_LAST:] for equation in equations])

@@ -8,6 +8,7 @@ from cmath import isfinite
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from math import ceil
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -58,7 +59,7 @@ class Structure:
     The first `fields` of the `unknowns` are fields, the others surfaces; `longest` is that of `System`. `parts` are the
     monomials, those from `first_b` on with the rate; `powers` (parts, symbols) counts the other `symbols` in them.
     Where w has a `reflection`, 1 or -1, of the T-coefficients of every field and residual either the even or the odd
-    ones vanish; it is 0 where all count.
+    ones vanish; it is 0 where all count. `growths` (layers,) are those of `Layer`.
     """
 
     unknowns: tuple
@@ -67,6 +68,7 @@ class Structure:
     longest: int
     rows: tuple
     reflection: int = 0
+    growths: tuple[tuple[int, float] | None, ...] = ()
 
     @property
     def stride(self) -> int:
@@ -78,12 +80,17 @@ class Structure:
         """The first coefficient that counts of each field; of its equation it is the other one, 0 or 1."""
         return tuple(int(self.reflection * ODD_WITH_W[field % len(FIELDS)] < 0) for field in range(self.fields))
 
+    def degrees(self, degree: int) -> list[int]:
+        """That of each layer where none has a larger one than this `degree`: all are for waves equally short."""
+        short = min((max(degree - plain, 0) / more for plain, more in filter(None, self.growths)), default=0.0)
+        return [min(degree, ceil(growth[0] + growth[1] * short)) if growth else degree for growth in self.growths]
+
     def __hash__(self) -> int:
         return self._hash
 
     @cached_property
     def _hash(self) -> int:
-        return hash((self.unknowns, self.rows, self.reflection))
+        return hash((self.unknowns, self.rows, self.reflection, self.growths))
 
     @cached_property
     def parts(self) -> tuple[Any, ...]:
@@ -118,7 +125,8 @@ class System:
         given = flow.conditions(edges, names)
         _check_conditions(flow, given)
         self.conditions = tuple(self._terms(form) for form in given)
-        self.dynamic_layers = sum(not layer.steady for layer in layers)
+        self.dynamic = tuple(not layer.steady for layer in layers)
+        self.growths = tuple(layer.growth for layer in layers)
         _check_count(flow, layers, len(self.conditions))
         if self.reflection:
             self.equations = _mirrored(flow, layers, self.equations)
@@ -137,7 +145,7 @@ class System:
                                                      for unknown, monomial, series in terms))
                       for name, extra, terms in rows)
         return _the_one(Structure((*self.fields, *self.surfaces), len(self.fields), len(self.equations), self.longest,
-                                  terms, self.reflection))
+                                  terms, self.reflection, self.growths))
 
     @cached_property
     def coefficients(self) -> np.ndarray:
@@ -146,8 +154,8 @@ class System:
         return np.concatenate([series[_places(series)] for terms in rows for *_, series in terms])
 
     def __eq__(self, other: Any) -> Any:
-        return self.reflection == other.reflection and _same(self.equations, other.equations) and _same(
-            self.conditions, other.conditions)
+        alike = (self.reflection, self.growths) == (other.reflection, other.growths)
+        return alike and _same(self.equations, other.equations) and _same(self.conditions, other.conditions)
 
     __hash__ = None  # type: ignore[assignment]
 

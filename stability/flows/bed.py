@@ -27,6 +27,7 @@ from ..errors import ParameterError
 from ..numerics.chebyshev import at_points
 from ..numerics.smooth import Rough, fit
 from .base import parameter
+from .growth import growths, turning
 from .law import Law
 
 _REST = 1e-8  # inertial number at which friction of a law with a yield stress is to rise linearly
@@ -211,8 +212,18 @@ def layers(law: Law, shields: float, creep: float, inertia: float = 1.0) -> tupl
     """The layers of the bed from below; the uppermost is called bed, those below it bed_2, bed_3 ..."""
     tau, parts = law.rest * shields, pieces(law, shields, creep)
     names = [f"bed_{number}" for number in range(len(parts), 1, -1)] + ["bed"]
-    return tuple(Layer(name, profile(law, tau, piece, inertia), singular=int(piece.singular))
-                 for name, piece in zip(names, parts, strict=True))
+    grow = [None] * len(parts) if law.yields else _growths(law, tau, parts)
+    return tuple(Layer(name, profile(law, tau, piece, inertia), singular=int(piece.singular), growth=growth)
+                 for name, piece, growth in zip(names, parts, grow, strict=True))
+
+
+def _growths(law: Law, tau: float, parts: tuple[Piece, ...]) -> Any:
+    """How the series of the pieces of a creeping bed grow."""
+    nodes, weights = _quadrature()
+    states = [piece.heights.at(law, tau, nodes) for piece in parts]
+    return growths([len(piece.series) for piece in parts],
+                   [turning(weights, zeta * stretch, tau / zeta**2, inertial, slope)  # weights are twice the integral's
+                    for zeta, inertial, stretch, slope in states])
 
 
 def below(edges: Any, count: int, yields: bool) -> tuple:

@@ -15,9 +15,11 @@ from ..errors import ParameterError
 from ..numerics.smooth import Rough, fit
 from .base import parameter
 from .granular import Granular
+from .growth import growths, turning
 from .law import Law
 from .laws import Saturating
 
+_NODES = 16  # of quadrature over a layer
 _CROWD = 8  # distance from the end at which heights crowd: this power of s
 
 
@@ -44,6 +46,7 @@ def sheared_layers(law: Law, parts: list[tuple[str, Callable[[Any], Equilibrium]
     surface that is no integer: heights crowd there then.
     """
     low, found = 0.0, []
+    lengths: list[int] = []
     for name, plain in parts:
         for state in (plain, partial(_crowded, plain, 0), partial(_crowded, plain, 1)):
             try:
@@ -58,7 +61,18 @@ def sheared_layers(law: Law, parts: list[tuple[str, Callable[[Any], Equilibrium]
         series = C.chebint(one.series[0], lbnd=-1) / 2
         found.append(Layer(name, _profile(law, state, series, low, inertia)))
         low += float(C.chebval(1.0, series))
-    return found
+        lengths.append(len(series))
+    return found if law.yields else _growing(law, found, [plain for _, plain in parts], lengths)
+
+
+def _growing(law: Law, layers: list[Layer], states: list[Callable[[Any], Equilibrium]],
+             lengths: list[int]) -> list[Layer]:
+    """The layers of a creeping flow, with the growth of their series."""
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    here = [state((1 + nodes) / 2) for state in states]
+    phases = [turning(weights / 2, one.dz, one.stress / one.pressure, one.inertial, law.slope(one.inertial))
+              for one in here]
+    return [replace(layer, growth=growth) for layer, growth in zip(layers, growths(lengths, phases), strict=True)]
 
 
 def _crowded(state: Any, end: Any, s: Any) -> Any:

@@ -15,6 +15,7 @@ from weakref import proxy
 import numpy as np
 from scipy.linalg import qr
 
+from ..equations.layer import FIELDS
 from ..errors import ModeLost
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ def dense_degrees(solver: "Solver", first: int, step: int = 1) -> list[int]:
 def unknowns(solver: "Solver", degree: int) -> int:
     """How many there are at a degree, roughly."""
     structure = solver.assembly.system.structure
-    return degree * structure.fields // structure.stride
+    return len(FIELDS) * sum(structure.degrees(degree)) // structure.stride
 
 
 def finite_rates(solver: "Solver", degree: int, symbols: dict[str, tuple[Any, ...]]) -> np.ndarray:
@@ -82,7 +83,8 @@ def _finite_count(solver: "Solver", degree: int) -> int:
     stride = system.structure.stride
     small = _SMALL + (degree - _SMALL) % stride
     count = smallest_count(Pattern(system.pattern, small, proxy(solver.assembly)))
-    return count + (degree - small) // stride * system.dynamic_layers
+    more = zip(system.dynamic, system.structure.degrees(degree), strict=True)
+    return count + sum((own - small) // stride for dynamic, own in more if dynamic)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,31 @@
+"""How the series of the layers of a creeping flow grow as waves become short: those of deep layers by far most.
+
+Without inertia a perturbation exp(i k (x + m z)) obeys, from the equations of `equations.layer`,
+
+    r (m^2 - 1)^2 - 2 a m^3 + 4 m^2 - 2 a m = 0,    r = I mu'/mu,    a = mu (1 - r/2).
+
+The slower the grains the smaller is r, and two of the roots are near m = a/r: the shorter waves. A series has as many
+terms as that of the velocity, and then as many more as such waves turn by radians, or nearly so (measured).
+"""
+
+from math import ceil
+from typing import Any
+
+import numpy as np
+
+_PART, _STEP, _LEAST = 0.8, 4, 12  # terms of fields over those of the velocity; multiples of them, and the least
+_ROUGHLY = 8  # parts of the phase that grows most: flows that are nearly the same are to have one structure
+
+
+def turning(weights: np.ndarray, heights: Any, mu: Any, inertial: Any, slope: Any) -> float:
+    """Radians over k by which these waves turn across a layer.
+
+    `heights` are dz/ds, `mu` the friction and `slope` mu'(I), at points whose integral over s has these `weights`.
+    """
+    return float(weights @ (heights * (mu**2 / (inertial * slope) - mu / 2)))
+
+
+def growths(lengths: list[int], phases: list[float]) -> list[tuple[int, float]]:
+    """`Layer.growth` of layers in whose series of the velocity there are so many terms, with these phases."""
+    plain = [max(_LEAST, _STEP * ceil(_PART * length / _STEP)) for length in lengths]
+    return [(least, ceil(_ROUGHLY * one / max(phases)) / _ROUGHLY) for least, one in zip(plain, phases, strict=True)]
