@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-_PART, _STEP, _LEAST = 0.8, 4, 12  # terms of fields over those of the velocity; multiples of them, and the least
+_PART, _STEP, _LEAST = 0.8, 4, 20  # terms of fields over those of the velocity; multiples of them, and the least
 _ROUGHLY = 8  # parts of the phase that grows most: flows that are nearly the same are to have one structure
 
 
