@@ -9,6 +9,7 @@ wavenumber that is the flow's own.
 """
 
 from collections.abc import Iterator
+from itertools import pairwise
 from math import copysign, log
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 
 _ROUGH = 1e-4  # tolerance of the walk; what is asked for is refined to full accuracy
 _FIRST, _FACTOR, _TRIES = 0.04, 5.0, 30  # wavenumbers at which the long-wave limit is sought: each a part of the last
+LOOKS = tuple(_FIRST / _FACTOR**look for look in range(3))  # the first ones
 _AGREEMENT = 0.03  # of the surface mode with its long-wave limit, in value and in slope
 _CONFIRMED = 3  # wavenumbers in a row, each a part of the last, at which it must agree
 _NO_FARTHER = 1.5, 1e-3  # factor in its distance from the limit that each may have over the one before, and a floor
@@ -41,8 +43,9 @@ _ASTRAY = 0.5  # largest deviation of the overlap with the next node from 1
 class Branch:
     """The mode `start` followed to any wavenumber; `solver` refines what is asked for, `rough` walks.
 
-    `lost` maps a side, 1 for rising k and -1 for falling k, to the reason why the walk ended there. `seen` are modes
-    that were looked at before the start was found; `final` tells that the start is as `solver` has it.
+    `lost` maps a side, 1 for rising k and -1 for falling k, to the reason why the walk ended there, `answers` the last
+    wavenumbers asked for, if few, to their modes. `seen` are modes that were looked at before the start was found;
+    `final` tells that the start is as `solver` has it.
     """
 
     def __init__(self, solver: "Solver", start: "Mode", rough: "Solver | None" = None, seen: Any = (),
@@ -50,7 +53,7 @@ class Branch:
         self.solver, self.start, self._seen, self._final = solver, start, seen, final
         self._rough = rough or solver.rough(_ROUGH)
         self._walks = {side: Walk(self._rough, start, solver) for side in (1, -1)}
-        self._answers: dict[float, Mode] = {}
+        self.answers: dict[float, Mode] = {}
         self.lost = {}
 
     @property
@@ -76,9 +79,15 @@ class Branch:
         return [*(part[::-1] for part in down[:0:-1]), whole, *up[1:]]
 
     @property
+    def shortest_step(self) -> float:
+        """Of the walks, in log k; first steps count where there is no other, since nothing told their length."""
+        steps = [[abs(log(b.k / a.k)) for a, b in pairwise(walk.segments[0])] for walk in self._walks.values()]
+        return min((step for taken in steps for step in taken[1:] or taken), default=0.0)
+
+    @property
     def known(self) -> "dict[float, Mode]":
         """{k: mode} of all that was computed on the way, roughly, and of the last answers to few wavenumbers."""
-        return {mode.k: mode for part in (self._answers.values(), self._seen, *self.segments) for mode in part}
+        return {mode.k: mode for part in (self.answers.values(), self._seen, *self.segments) for mode in part}
 
     def reach(self, k: float) -> bool:
         """Walk until k lies behind; return whether it does."""
@@ -111,7 +120,7 @@ class Branch:
             else:
                 found[k] = mode
         if len(found) <= _FEW:
-            self._answers = found
+            self.answers = found
         return found, lost
 
     def _side(self, k: float) -> int:

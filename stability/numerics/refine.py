@@ -117,6 +117,12 @@ def refine_many(pencil: Any, weights: Any, rate: np.ndarray | None, x: np.ndarra
     return _quotient(pencil, weights, x, y, steps, shares, settled, bars, (inner, own))
 
 
+def quotient(pencil: Any, weights: Any, x: np.ndarray, y: np.ndarray) -> complex:
+    """The Rayleigh quotient of vectors x, y (size,) at one point: with those of a mode of nearly the same pencil it is
+    the rate to first order in the difference."""
+    return _rate(pencil, weights.value * pencil.arithmetic.brackets(x, y.conj()))
+
+
 def _inside(condensed: Any, pencil: Any, weights: Any, x: np.ndarray, y: np.ndarray) -> tuple[Any, ...]:
     """Where iterations take place, the pencil or what is `condensed` of it, with its weights and the vectors there."""
     if condensed is None:

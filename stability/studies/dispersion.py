@@ -13,7 +13,7 @@ from ..modes.accuracy import DEGREES, TOLERANCE, check_accuracy
 from ..modes.branch import Branch, rough_solver, surface_branch
 from ..modes.eigenvalue import Eigenvalues
 from ..modes.listing import leading_modes, listed
-from ..modes.memory import branch_of
+from ..modes.memory import beside, branch_of
 from ..modes.mode import Mode, require
 from ..modes.short_waves import ill_posed_somewhere, ill_posed_strips
 from ..modes.solver import Solver
@@ -247,8 +247,12 @@ def default_mode(flow: "Flow") -> str:
 
 
 def _surface(solver: Solver, wavenumbers: np.ndarray) -> Iterator[Any]:
-    """Follow the surface mode from its long-wave limit."""
-    yield from _followed(solver, surface_branch, wavenumbers)
+    """Follow the surface mode from its long-wave limit, or step to it from a flow that is all but the same."""
+    found = beside(solver, surface_branch, wavenumbers.tolist())
+    if found:
+        yield found, {}, ()
+    else:
+        yield from _followed(solver, surface_branch, wavenumbers)
 
 
 def _leading(solver: Solver, wavenumbers: np.ndarray) -> Iterator[Any]:

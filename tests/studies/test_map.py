@@ -323,6 +323,21 @@ def test_ctrl_c_and_kill_lose_nothing(tmp_path, uninterrupted):
     assert [path.name for path in tmp_path.iterdir()] == [target.name]
 
 
+def test_what_is_written_counts_as_kept_whenever_ctrl_c_comes(tmp_path, capsys, monkeypatch):
+    """Even between the writing of a piece and all that follows from it."""
+    add, written = Journal._append, []
+
+    def append(journal, line):
+        add(journal, line)
+        written.append(line)
+        if len(written) == 4:  # the request and three pieces
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(Journal, "_append", append)
+    assert main([*COMMAND, "-o", str(tmp_path / "x.csv"), "--workers", "1"]) == 130
+    assert "interrupted: 12 of 64 points are kept" in capsys.readouterr().err
+
+
 def _wait_until_nobody_is_left(group):
     """Workers end with their parent, soon."""
     limit = time.monotonic() + 5

@@ -54,7 +54,7 @@ def _run(arguments: Any) -> Any:
     from ...studies.pool import cores, without_threads
 
     without_threads()
-    from ...studies.map import carry_out
+    from ...studies.map import carry_out, points_kept
 
     request = request_of()
     journal = Path(f"{arguments.output}.partial")
@@ -68,8 +68,8 @@ def _run(arguments: Any) -> Any:
         status = report(arguments, lambda: found)
     except KeyboardInterrupt:
         bar.clear()
-        say(f"stability: interrupted: {bar.done} of {request.size} points are kept in {str(journal)!r}; "
-            "the same command resumes")
+        say(f"stability: interrupted: {points_kept(request, journal)} of {request.size} points are kept in "
+            f"{str(journal)!r}; the same command resumes")
         return INTERRUPTED_STATUS
     finally:
         bar.clear()
