@@ -94,8 +94,8 @@ class Layer:
     `profile(s)` returns its base flow. `singular` is the number of edges at which the leading
     coefficient of the shear-rate equation vanishes: each replaces one condition (the bounded
     solution is the one that the series can represent). `steady` drops the time derivative. `growth` tells how
-    many coefficients it needs beside other layers: so many for long waves, and how many more for shorter ones, relative
-    to those others; without it, as many as the layer that needs most.
+    many coefficients its fields are likely to need: so many for long waves, and how many more times k; without it, as
+    many as in the layer that needs most.
 
     `name` is that of its `edges`. Heights are in L, as all else in the scales of the flow. Raises NotSmooth where a
     profile has a kink, a step or no finite values.

@@ -26,6 +26,7 @@ _PROPORTIONAL = 1e-12  # relative difference of ratios that is rounding: two con
 _FEW = 8  # terms of a series up to which each of them counts
 _MANY = 3  # layers from which on longer series have lengths that others share: their blocks are full anyway
 _LENGTHS, _STEP = (16, 32), 4  # those lengths, and how far apart they are beyond
+_ROUGHLY = 8  # parts of the largest growth
 _SYMMETRIC = 1e-13  # largest coefficient of the wrong parity, relative, in a layer that is its own mirror image
 _EQUATIONS = ("shear rate", "continuity", "momentum along", "momentum across")
 
@@ -59,7 +60,8 @@ class Structure:
     The first `fields` of the `unknowns` are fields, the others surfaces; `longest` is that of `System`. `parts` are the
     monomials, those from `first_b` on with the rate; `powers` (parts, symbols) counts the other `symbols` in them.
     Where w has a `reflection`, 1 or -1, of the T-coefficients of every field and residual either the even or the odd
-    ones vanish; it is 0 where all count. `growths` (layers,) are those of `Layer`.
+    ones vanish; it is 0 where all count. `growths` (layers,) are those of `Layer`, their
+    second numbers relative to the largest.
     """
 
     unknowns: tuple
@@ -126,7 +128,8 @@ class System:
         _check_conditions(flow, given)
         self.conditions = tuple(self._terms(form) for form in given)
         self.dynamic = tuple(not layer.steady for layer in layers)
-        self.growths = tuple(layer.growth for layer in layers)
+        self._growths = tuple(layer.growth for layer in layers)
+        self.growths = _relative(self._growths)
         _check_count(flow, layers, len(self.conditions))
         if self.reflection:
             self.equations = _mirrored(flow, layers, self.equations)
@@ -158,6 +161,10 @@ class System:
         return alike and _same(self.equations, other.equations) and _same(self.conditions, other.conditions)
 
     __hash__ = None  # type: ignore[assignment]
+
+    def likely_degree(self, k: float) -> float:
+        """What the layers that tell how their series grow are likely to need at wavenumber k; 0 where none does."""
+        return max((plain + more * k for plain, more in filter(None, self._growths)), default=0.0)
 
     @property
     def longest(self) -> int:
@@ -202,6 +209,12 @@ def _split(names: tuple[str, ...], known: tuple[str, ...]) -> tuple[str, tuple[s
         raise ParameterError("equations and conditions must be linear in the unknowns and in the rate: got "
                              f"{'*'.join(names) or 'a constant'}")
     return unknowns[0], tuple(name for name in names if name != unknowns[0])
+
+
+def _relative(growths: tuple[tuple[int, float] | None, ...]) -> tuple[tuple[int, float] | None, ...]:
+    """The growths of layers for waves equally short, roughly: flows that are nearly the same are to have the same."""
+    most = max((growth[1] for growth in filter(None, growths)), default=0.0)
+    return tuple(growth and (growth[0], ceil(_ROUGHLY * growth[1] / most) / _ROUGHLY) for growth in growths)
 
 
 def _same(one: Any, other: Any) -> bool:

@@ -4,8 +4,8 @@ Without inertia a perturbation exp(i k (x + m z)) obeys, from the equations of `
 
     r (m^2 - 1)^2 - 2 a m^3 + 4 m^2 - 2 a m = 0,    r = I mu'/mu,    a = mu (1 - r/2).
 
-The slower the grains the smaller is r, and two of the roots are near m = a/r: the shorter waves. A series has as many
-terms as that of the velocity, and then as many more as such waves turn by radians, or nearly so (measured).
+The slower the grains the smaller is r, and two of the roots are near m = a/r: the shorter waves. A series has nearly as
+many terms as that of the velocity, and more by two thirds of the radians by which such waves turn (measured).
 """
 
 from math import ceil
@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
+_TURN = 0.65  # terms over radians
 _PART, _STEP, _LEAST = 0.8, 4, 20  # terms of fields over those of the velocity; multiples of them, and the least
-_ROUGHLY = 8  # parts of the phase that grows most: flows that are nearly the same are to have one structure
 
 
 def turning(weights: np.ndarray, heights: Any, mu: Any, inertial: Any, slope: Any) -> float:
@@ -27,5 +27,5 @@ def turning(weights: np.ndarray, heights: Any, mu: Any, inertial: Any, slope: An
 
 def growths(lengths: list[int], phases: list[float]) -> list[tuple[int, float]]:
     """`Layer.growth` of layers in whose series of the velocity there are so many terms, with these phases."""
-    plain = [max(_LEAST, _STEP * ceil(_PART * length / _STEP)) for length in lengths]
-    return [(least, ceil(_ROUGHLY * one / max(phases)) / _ROUGHLY) for least, one in zip(plain, phases, strict=True)]
+    return [(max(_LEAST, _STEP * ceil(_PART * length / _STEP)), _TURN * one)
+            for length, one in zip(lengths, phases, strict=True)]

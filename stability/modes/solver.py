@@ -215,6 +215,11 @@ class Solver:
         least *= self.assembly.system.structure.stride
         return next((degree for degree in self.degrees if degree >= least), self.degrees[-1])
 
+    def expected_degree(self, k: float) -> int:
+        """The largest degree that the flow says its series are likely to need at k, or the smallest of all."""
+        likely = self.assembly.system.likely_degree(k)
+        return max((degree for degree in self.degrees if degree <= likely), default=self.degrees[0])
+
     def likely_degree(self, mode: Mode) -> int:
         """The degree to try first where this solver, or a rougher one, has found a mode: a higher one if its own is too
         low, the last that is no larger than where its error is small enough if its series fall on as they do."""

@@ -6,6 +6,7 @@
 The interior is factorised as a band (LAPACK gbtrf); the border follows by block elimination.
 """
 
+from collections.abc import Iterable
 from contextlib import suppress
 from functools import cached_property
 from typing import Any
@@ -18,6 +19,7 @@ from .stack import with_data
 
 UNEVEN = 1e6  # largest entry of a sum above which its rows and columns are scaled
 
+_MANY = 4000  # entries of a sum from which on each point is summed by itself
 _FULL = {"f": (lapack.dgetrf, lapack.dgetri), "c": (lapack.zgetrf, lapack.zgetri)}
 _BAND = {"f": (lapack.dgbtrf, lapack.dgbtrs), "c": (lapack.zgbtrf, lapack.zgbtrs)}
 
@@ -66,7 +68,20 @@ class Places:
         """Return band, right and bottom with these values (..., places) in place."""
         flat = np.zeros((*values.shape[:-1], self._starts[3]), values.dtype)
         flat[..., self._place] = values
-        return tuple(flat[..., start: stop].reshape(*values.shape[:-1], *shape) for start, stop, shape in
+        return self._split(flat)
+
+    def filled(self, each: Iterable[np.ndarray], count: int, kind: Any) -> tuple[tuple[np.ndarray, ...], np.ndarray]:
+        """The same for the values (places,) of `count` points, and the largest real or imaginary parts (points,)."""
+        flat, largest = np.zeros((count, self._starts[3]), kind), np.empty(count)
+        for point, values in enumerate(each):
+            flat[point, self._place] = values
+            numbers = values.view(float)
+            largest[point] = max(numbers.max(initial=0), -numbers.min(initial=0))
+        return self._split(flat), largest
+
+    def _split(self, flat: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Band, right and bottom in arrays (..., count)."""
+        return tuple(flat[..., start: stop].reshape(*flat.shape[:-1], *shape) for start, stop, shape in
                      zip(self._starts[:-1], self._starts[1:], self._shapes, strict=True))
 
 
@@ -112,8 +127,12 @@ class Bordered:
 
     def sums(self, weights: Any) -> Any:
         """Return the blocks of the sums at many points, weights (parts, points), unscaled, and which are uneven."""
-        values = np.ascontiguousarray((self._matrix @ weights).T)
-        return self.places.blocks(values), np.abs(values.view(float)).max(axis=1) > UNEVEN
+        if self._matrix.nnz < _MANY:
+            values = np.ascontiguousarray((self._matrix @ weights).T)
+            return self.places.blocks(values), np.abs(values.view(float)).max(axis=1) > UNEVEN
+        each = (self._matrix @ one for one in np.ascontiguousarray(weights.T))  # what is summed stays in the cache
+        sums, largest = self.places.filled(each, weights.shape[1], np.result_type(self._matrix.dtype, weights))
+        return sums, largest > UNEVEN
 
     def _scales(self, size: np.ndarray) -> np.ndarray:
         """Powers of two for rows and columns, (2, size), by the sizes of the entries."""
