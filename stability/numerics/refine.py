@@ -30,7 +30,7 @@ _FACTORISATIONS = 12
 _ROUNDS = 3  # of factorisations at many points
 _CORRECTIONS = 12
 VECTOR = 1e-9  # error of a vector, and so of the slope, that is accepted
-_ALONE = 40  # degree from which on a single eigenvalue is sought in what is condensed of a pencil: that takes a while
+_ALONE = 80  # degree from which on a single eigenvalue is sought in what is condensed of a pencil: that takes a while
 _sum = np.add.reduce  # over the parts
 _OFFSET = 1e-3  # of a factorisation for corrections from its rate: it must not be singular
 
