@@ -27,7 +27,7 @@ from ..errors import ParameterError
 from ..numerics.chebyshev import at_points
 from ..numerics.smooth import Rough, fit
 from .base import parameter
-from .growth import growths, turning
+from .growth import growths, nodes, turning
 from .law import Law
 
 _REST = 1e-8  # inertial number at which friction of a law with a yield stress is to rise linearly
@@ -101,6 +101,7 @@ class Piece:
     singular: bool  # whether its lower edge is the yield surface
     low: float  # velocity at the lower edge
     series: Any  # of the velocity above it
+    growth: tuple[int, float] | None  # of all series, where grains creep
 
     def velocity(self, s: Any) -> Any:
         """U at the points s; it rises from the lower edge."""
@@ -119,10 +120,20 @@ def pieces(law: Law, shields: float, creep: float) -> tuple[Piece, ...]:
     tau = law.rest * shields
     parts: Any = _yielding(law, tau, shields) if law.yields else _creeping(law, tau, creep)
     found: list[Piece] = []
-    for heights, series in zip(parts, _velocities(law, tau, parts), strict=True):
+    velocities = _velocities(law, tau, parts)
+    grow = [None] * len(parts) if law.yields else _growths(law, tau, parts, velocities)
+    for heights, series, growth in zip(parts, velocities, grow, strict=True):
         low = found[-1].top if found else 0.0
-        found.append(Piece(heights, law.yields and not found, low, series))
+        found.append(Piece(heights, law.yields and not found, low, series, growth))
     return tuple(found)
+
+
+def _growths(law: Law, tau: float, parts: "list[Creeping]", velocities: list[np.ndarray]) -> Any:
+    """How the series of the parts of a creeping bed grow."""
+    states = [heights.at(law, tau, nodes()[0]) for heights in parts]
+    return growths([len(series) for series in velocities],
+                   [turning(2 * zeta * stretch, tau / zeta**2, inertial, slope)
+                    for zeta, inertial, stretch, slope in states])
 
 
 def _yielding(law: Law, tau: float, shields: float) -> "list[Sinking]":
@@ -212,18 +223,8 @@ def layers(law: Law, shields: float, creep: float, inertia: float = 1.0) -> tupl
     """The layers of the bed from below; the uppermost is called bed, those below it bed_2, bed_3 ..."""
     tau, parts = law.rest * shields, pieces(law, shields, creep)
     names = [f"bed_{number}" for number in range(len(parts), 1, -1)] + ["bed"]
-    grow = [None] * len(parts) if law.yields else _growths(law, tau, parts)
-    return tuple(Layer(name, profile(law, tau, piece, inertia), singular=int(piece.singular), growth=growth)
-                 for name, piece, growth in zip(names, parts, grow, strict=True))
-
-
-def _growths(law: Law, tau: float, parts: tuple[Piece, ...]) -> Any:
-    """How the series of the pieces of a creeping bed grow."""
-    nodes, weights = _quadrature()
-    states = [piece.heights.at(law, tau, nodes) for piece in parts]
-    return growths([len(piece.series) for piece in parts],
-                   [turning(weights, zeta * stretch, tau / zeta**2, inertial, slope)  # weights are twice the integral's
-                    for zeta, inertial, stretch, slope in states])
+    return tuple(Layer(name, profile(law, tau, piece, inertia), singular=int(piece.singular), growth=piece.growth)
+                 for name, piece in zip(names, parts, strict=True))
 
 
 def below(edges: Any, count: int, yields: bool) -> tuple:

@@ -15,11 +15,10 @@ from ..errors import ParameterError
 from ..numerics.smooth import Rough, fit
 from .base import parameter
 from .granular import Granular
-from .growth import growths, turning
+from .growth import growths, nodes, turning
 from .law import Law
 from .laws import Saturating
 
-_NODES = 16  # of quadrature over a layer
 _CROWD = 8  # distance from the end at which heights crowd: this power of s
 
 
@@ -68,10 +67,8 @@ def sheared_layers(law: Law, parts: list[tuple[str, Callable[[Any], Equilibrium]
 def _growing(law: Law, layers: list[Layer], states: list[Callable[[Any], Equilibrium]],
              lengths: list[int]) -> list[Layer]:
     """The layers of a creeping flow, with the growth of their series."""
-    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
-    here = [state((1 + nodes) / 2) for state in states]
-    phases = [turning(weights / 2, one.dz, one.stress / one.pressure, one.inertial, law.slope(one.inertial))
-              for one in here]
+    here = [state(nodes()[0]) for state in states]
+    phases = [turning(one.dz, one.stress / one.pressure, one.inertial, law.slope(one.inertial)) for one in here]
     return [replace(layer, growth=growth) for layer, growth in zip(layers, growths(lengths, phases), strict=True)]
 
 

@@ -8,21 +8,28 @@ The slower the grains the smaller is r, and two of the roots are near m = a/r: t
 many terms as that of the velocity, and more by two thirds of the radians by which such waves turn (measured).
 """
 
+from functools import lru_cache
 from math import ceil
 from typing import Any
 
 import numpy as np
 
+_NODES = 16
 _TURN = 0.65  # terms over radians
 _PART, _STEP, _LEAST = 0.8, 4, 20  # terms of fields over those of the velocity; multiples of them, and the least
 
 
-def turning(weights: np.ndarray, heights: Any, mu: Any, inertial: Any, slope: Any) -> float:
-    """Radians over k by which these waves turn across a layer.
+@lru_cache(maxsize=1)
+def nodes() -> tuple[np.ndarray, np.ndarray]:
+    """Points in 0 < s < 1 at which a layer is looked at, and weights of an integral over s."""
+    places, weights = np.polynomial.legendre.leggauss(_NODES)
+    return (1 + places) / 2, weights / 2
 
-    `heights` are dz/ds, `mu` the friction and `slope` mu'(I), at points whose integral over s has these `weights`.
-    """
-    return float(weights @ (heights * (mu**2 / (inertial * slope) - mu / 2)))
+
+def turning(heights: Any, mu: Any, inertial: Any, slope: Any) -> float:
+    """Radians over k by which these waves turn across a layer: `heights` are dz/ds, `mu` the friction and `slope`
+    mu'(I), at the `nodes`."""
+    return float(nodes()[1] @ (heights * (mu**2 / (inertial * slope) - mu / 2)))
 
 
 def growths(lengths: list[int], phases: list[float]) -> list[tuple[int, float]]:

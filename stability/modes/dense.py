@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from weakref import proxy
 
 import numpy as np
-from scipy.linalg import qr
+from scipy.linalg import lapack
 
 from ..equations.layer import FIELDS
 from ..errors import ModeLost
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 _LARGEST = 1300  # unknowns of a dense problem
 _SHIFT = 0.01 - 0.013j  # tried when the pencil is singular at rate 0
 _SINGULAR = 1e14  # ratio of the two largest theta above which rate 0 is taken for an eigenvalue
+_QR = {"f": (lapack.dgeqp3, lapack.dormqr), "c": (lapack.zgeqp3, lapack.zunmqr)}
+_WORK = 32  # columns that LAPACK treats at once
 _SMALL = 10  # degree of the pencil whose finite eigenvalues are counted
 
 
@@ -70,11 +72,15 @@ def _theta(pencil: Any, weights: Any, rank: Any = None) -> Any:
 
 
 def _eigenvalues(g: np.ndarray, rank: int | None) -> np.ndarray:
-    """Eigenvalues of g; the non-zero ones alone from g = q r, which has those of r q."""
+    """Eigenvalues of g; the non-zero ones alone from g = q r, which has those of r q: of both `rank` lines count."""
     if rank is None or rank >= len(g):
         return np.linalg.eigvals(g)
-    q, r, order = qr(g, pivoting=True, check_finite=False)
-    return np.linalg.eigvals(r[:rank] @ q[order, :rank])
+    count = len(g)
+    factor, times = _QR[g.dtype.kind]
+    reflectors, order, scales, *_ = factor(g, lwork=_WORK * (count + 1))
+    r = np.zeros((rank, count), g.dtype, order="F")
+    r[:, order - 1] = np.triu(reflectors[:rank])
+    return np.linalg.eigvals(times("R", "N", reflectors[:, :rank], scales[:rank], r, lwork=_WORK * count)[0][:, :rank])
 
 
 def _finite_count(solver: "Solver", degree: int) -> int:
