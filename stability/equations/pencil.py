@@ -59,7 +59,7 @@ def weights_of(structure: "Structure", symbols: dict[str, tuple[Any, ...]]) -> "
 
 
 class Layout:
-    """Where unknowns and entries of the matrices of one degree lie, from a `table` that reaches it.
+    """Where unknowns and entries of the matrices of one degree lie, from a `table` of the structure that reaches it.
 
     Attributes: `size` rows and columns, of which `interior` are banded; `columns` and `rows` map unknowns and equations
     to index arrays of their coefficients, `orders` to the numbers of those; `last` (equations, 4) are the last rows of
@@ -69,8 +69,8 @@ class Layout:
     which parts are of B, and `sides` the first of A and the first of B.
     """
 
-    def __init__(self, table: "Table", degree: int) -> None:
-        self.table, self.structure, self.degree, self._common = table, table.structure, degree, {}
+    def __init__(self, table: "Table", degree: int, structure: "Structure") -> None:
+        self.table, self.structure, self.degree, self._common = table, structure, degree, {}
         columns, rows = self._maps = self._place(table)
         within = (table.column <= degree) & (table.row < rows.shape[1])
         places = rows[table.equation, np.where(within, table.row, 0)]
@@ -112,7 +112,7 @@ class Layout:
 
         Returns the places of columns (unknowns, degree + 1) and of rows (equations and conditions, ...).
         """
-        structure, width = table.structure, self.degree + 1
+        structure, width = self.structure, self.degree + 1
         equations, conditions = structure.rows[:structure.equations], len(structure.rows) - structure.equations
         extra = np.array([equation.extra for equation in equations])
         used = np.zeros((len(structure.unknowns), width), bool)

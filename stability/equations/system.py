@@ -8,7 +8,7 @@ from cmath import isfinite
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from math import ceil
+from math import ceil, log2
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -26,7 +26,7 @@ _PROPORTIONAL = 1e-12  # relative difference of ratios that is rounding: two con
 _FEW = 8  # terms of a series up to which each of them counts
 _MANY = 3  # layers from which on longer series have lengths that others share: their blocks are full anyway
 _LENGTHS, _STEP = (16, 32), 4  # those lengths, and how far apart they are beyond
-_ROUGHLY = 8  # parts of the largest growth
+_LEAST, _STEPS = 0.35, 2  # of growths over the largest: the smallest that is told apart, and steps in an octave
 _SYMMETRIC = 1e-13  # largest coefficient of the wrong parity, relative, in a layer that is its own mirror image
 _EQUATIONS = ("shear rate", "continuity", "momentum along", "momentum across")
 
@@ -71,6 +71,11 @@ class Structure:
     rows: tuple
     reflection: int = 0
     growths: tuple[tuple[int, float] | None, ...] = ()
+
+    @cached_property
+    def plain(self) -> "Structure":
+        """The same without the growths: tables of entries do not depend on them."""
+        return _the_one(replace(self, growths=(None,) * len(self.growths)))
 
     @property
     def stride(self) -> int:
@@ -214,7 +219,12 @@ def _split(names: tuple[str, ...], known: tuple[str, ...]) -> tuple[str, tuple[s
 def _relative(growths: tuple[tuple[int, float] | None, ...]) -> tuple[tuple[int, float] | None, ...]:
     """The growths of layers for waves equally short, roughly: flows that are nearly the same are to have the same."""
     most = max((growth[1] for growth in filter(None, growths)), default=0.0)
-    return tuple(growth and (growth[0], ceil(_ROUGHLY * growth[1] / most) / _ROUGHLY) for growth in growths)
+    return tuple(growth and (growth[0], _roughly(growth[1] / most)) for growth in growths)
+
+
+def _roughly(share: float) -> float:
+    """One of a few numbers that is not smaller."""
+    return 2 ** (ceil(_STEPS * log2(max(share, _LEAST))) / _STEPS)
 
 
 def _same(one: Any, other: Any) -> bool:

@@ -5,7 +5,9 @@ Without inertia a perturbation exp(i k (x + m z)) obeys, from the equations of `
     r (m^2 - 1)^2 - 2 a m^3 + 4 m^2 - 2 a m = 0,    r = I mu'/mu,    a = mu (1 - r/2).
 
 The slower the grains the smaller is r, and two of the roots are near m = a/r: the shorter waves. A series has nearly as
-many terms as that of the velocity, and more by two thirds of the radians by which such waves turn (measured).
+many terms as that of the velocity, and more by two thirds of the radians by which such waves turn (measured). Where
+inertia matters others turn by (k rho U/beta)^(1/2) times the height, with the rise of U across the layer: those are
+longer as k grows, so that they only keep a layer from being taken for one with few waves.
 """
 
 from functools import lru_cache
@@ -32,7 +34,15 @@ def turning(heights: Any, mu: Any, inertial: Any, slope: Any) -> float:
     return float(nodes()[1] @ (heights * (mu**2 / (inertial * slope) - mu / 2)))
 
 
-def growths(lengths: list[int], phases: list[float]) -> list[tuple[int, float]]:
-    """`Layer.growth` of layers in whose series of the velocity there are so many terms, with these phases."""
-    return [(max(_LEAST, _STEP * ceil(_PART * length / _STEP)), _TURN * one)
-            for length, one in zip(lengths, phases, strict=True)]
+def swaying(heights: Any, density: float, rise: float, viscosity: Any) -> float:
+    """Radians over k^(1/2) by which waves with inertia turn across a layer whose velocity grows by `rise`: `heights`
+    are dz/ds and `viscosity` beta at the `nodes`."""
+    return float(nodes()[1] @ (heights * np.sqrt(density * rise / viscosity)))
+
+
+def growths(lengths: list[int], slow: list[float], swift: list[float]) -> list[tuple[int, float]]:
+    """`Layer.growth` of layers in whose series of the velocity there are so many terms, with these phases of waves
+    without and with inertia."""
+    most = max(slow)
+    return [(max(_LEAST, _STEP * ceil(_PART * length / _STEP)), _TURN * min(max(one, other), most))
+            for length, one, other in zip(lengths, slow, swift, strict=True)]

@@ -86,7 +86,7 @@ class Assembly:
         if size * structure.longest <= _LARGE:
             return _LAYOUTS[size * structure.longest > _SMALL](structure, degree, size)
         large = (table for table in self._values if table.degree == size)
-        return Layout(next(large, None) or Table(structure, size), degree)
+        return Layout(next(large, None) or Table(structure.plain, size), degree, structure)
 
     def serving(self, flow: "Flow") -> "Assembly":
         """Return this assembly if its equations are those of `flow` too, else a new one.
@@ -100,7 +100,8 @@ class Assembly:
 def _layouts(layouts: int, tables: int) -> Callable[..., Layout]:
     """A function of structure, degree and size of the table that keeps so many layouts and tables."""
     table_of = lru_cache(maxsize=tables)(Table)
-    return lru_cache(maxsize=layouts)(lambda structure, degree, size: Layout(table_of(structure, size), degree))
+    return lru_cache(maxsize=layouts)(
+        lambda structure, degree, size: Layout(table_of(structure.plain, size), degree, structure))
 
 
 _LAYOUTS = tuple(_layouts(*kept) for kept in _KEPT)

@@ -7,7 +7,7 @@ import pytest
 
 from stability import dispersion
 from stability.flows import Chute, Dune, Plate, Regularised
-from stability.flows.growth import turning
+from stability.flows.growth import swaying, turning
 from stability.modes.dense import Pattern, finite_rates, smallest_count, unknowns
 from stability.modes.solver import Assembly, Solver
 
@@ -64,12 +64,12 @@ def test_what_a_short_series_leaves_out_is_in_the_error(name):
     flow = Starved(law=Regularised())
     object.__setattr__(flow, "creep_name", name)
     exact = dispersion(BED, 3.0).modes[0]
-    for degree in (48, 64):
+    for degree in (32, 40):
         mode = solved(flow, 3.0, degree)
         starved = Assembly(flow).system.structure.degrees(degree)[["bed_3", "bed_2", "bed"].index(name)]
-        assert starved <= 12
+        assert starved <= 17
         off = abs(mode.sigma - exact.sigma)
-        assert off > 1e-10
+        assert off > 10 * exact.error
         assert off <= mode.error < 1e4 * off
 
 
@@ -108,3 +108,15 @@ def test_finite_eigenvalues_are_counted_layer_by_layer(flow):
     finer = finite_rates(solver, 48, solver.symbols(1.0))
     for rate in rates[:4]:
         assert np.abs(finer - rate).min() < 1e-3 * abs(rate)
+
+
+def test_waves_with_inertia_keep_upper_layers_from_few_terms():
+    """Light grains creep, heavy ones sway where they are fast: by the square root of their inertia."""
+    shares = []
+    for grains in (1.0, 10.0, 100.0):
+        plate = Plate(law=Regularised(), shields=1.6, grains=grains)
+        shares.append([more for _, more in Solver(plate).assembly.system.structure.growths])
+    assert [one[0] for one in shares] == [1.0, 1.0, 1.0]
+    assert shares[0][2] == shares[1][2] == pytest.approx(8**-0.5)
+    assert shares[2][2] == 1.0
+    assert swaying(np.full(16, 2.0), 9.0, 4.0, np.full(16, 0.25)) == pytest.approx(2 * (9 * 4 / 0.25) ** 0.5)
