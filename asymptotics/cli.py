@@ -10,7 +10,10 @@ from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 from . import __version__
+from .catalogue import names
+from .errors import BadParameter, NoSuchFlow, TooFewPoints
 from .reading import read_csv, source
+from .specs import BadSpec, parse_spec
 from .streams import drop_output, open_streams, say
 from .usage import BadUsage, Help, Parser, add_parameters, nearest, positive
 
@@ -48,14 +51,8 @@ def _run(argv: list[str]) -> int:
         return arguments.run(arguments)
     except BadUsage as reason:
         return _fail(reason, 2)
-    except (ValueError, LookupError) as reason:
-        from .comparison import TooFewPoints
-        from .flows import NoSuchFlow
-        from .parameters import BadParameter
-
-        if isinstance(reason, (BadParameter, NoSuchFlow, TooFewPoints)):
-            return _fail(reason.args[0], 2)
-        raise
+    except (BadParameter, NoSuchFlow, TooFewPoints) as reason:
+        return _fail(reason.args[0], 2)
 
 
 def _fail(reason: Any, status: int) -> int:
@@ -77,8 +74,14 @@ def _parser(argv: list[str]) -> Parser:
         verb.add_argument("--regime", metavar="NAME", help="which limit (see: asymptotics flows)")
         verb.add_argument("-h", "--help", action=Help, help="show this help and exit")
         if argv and argv[0] in VERBS[1:]:
-            add_parameters(verb)
+            add_parameters(verb, _flags_are_needed(argv[1:]))
     return parser
+
+
+def _flags_are_needed(words: list[str]) -> bool:
+    """Whether these words, after a verb, can have parameters of a flow among them."""
+    flows = names()
+    return any(word in flows or word.startswith("-") and word not in ("-h", "--help") for word in words)
 
 
 def _add_expand(verbs: Any) -> Parser:
@@ -127,9 +130,7 @@ def _add_forms(verb: Parser, **forms: str) -> None:
 
 
 def _flows(arguments: argparse.Namespace) -> int:
-    from . import flows
-
-    chosen = [arguments.flow] if arguments.flow else flows.names()
+    chosen = [arguments.flow] if arguments.flow else names()
     print(_folded("\n".join(_describe(name, _load(name)) for name in chosen)))
     return 0
 
@@ -145,13 +146,15 @@ def _describe(name: str, flow: Any) -> str:
 
 
 def _expand(arguments: argparse.Namespace) -> int:
-    from . import flows, printing
-
     flow = _load(arguments.flow)
-    expansion = flows.expand(arguments.flow, arguments.regime, arguments.order, numbers=arguments.numbers,
-                             **_given(arguments))
+    from .flows import expand
+
+    expansion = expand(arguments.flow, arguments.regime, arguments.order, numbers=arguments.numbers,
+                       **_given(arguments))
     if arguments.numbers:
         _need_numbers(expansion)
+    from . import printing
+
     meanings = {parameter.name: parameter.meaning for parameter in flow.PARAMETERS}
     writer = {"json": printing.as_json, "latex": lambda one: printing.latex(one, flow.LATEX),
               None: lambda one: _folded(printing.table(one, meanings))}[arguments.form]
@@ -167,15 +170,15 @@ def _need_numbers(expansion: "Expansion") -> None:
 
 
 def _evaluate(arguments: argparse.Namespace) -> int:
-    from . import flows, printing
-    from .specs import BadSpec, parse_spec
-
     _load(arguments.flow)
     try:
         k = parse_spec(arguments.k, "--k")
     except BadSpec as reason:
         raise BadUsage(reason) from None
-    expansion = flows.expand(arguments.flow, arguments.regime, arguments.order, numbers=True, **_given(arguments))
+    from . import printing
+    from .flows import expand
+
+    expansion = expand(arguments.flow, arguments.regime, arguments.order, numbers=True, **_given(arguments))
     if expansion.gauge.name != "k":
         raise BadUsage(f"regime {expansion.regime} is a series in {expansion.gauge}, not in k: evaluate takes a regime "
                        "in powers of k; see asymptotics expand for its coefficients")
@@ -186,24 +189,24 @@ def _evaluate(arguments: argparse.Namespace) -> int:
 
 
 def _check(arguments: argparse.Namespace) -> int:
-    from . import flows
-    from .limits import OrderMismatch, assert_order
-
-    _load(arguments.flow)
+    flow = _load(arguments.flow)
     tolerance, largest = positive(arguments.tolerance, "--tolerance"), None
     if arguments.k_max is not None:
         largest = positive(arguments.k_max, "--k-max")
+    from .flows import expand
+    from .limits import OrderMismatch, assert_order
+
     header, columns, left_out = read_csv(arguments.file)
     if header.get("flow", arguments.flow) != arguments.flow:
         raise BadUsage(f"{source(arguments.file)} holds the flow {header['flow']}, asked for {arguments.flow}; "
                        f"run: asymptotics check {header['flow']}")
-    laws = getattr(flows.load(arguments.flow), "LAWS", ())
+    laws = getattr(flow, "LAWS", ())
     if laws and header.get("law", laws[0]) not in laws:
         raise BadUsage(f"{source(arguments.file)} holds friction law {header['law']}; the expansions of "
                        f"{arguments.flow} are those of law {' and '.join(laws)}")
-    names = {parameter.name for parameter in flows.load(arguments.flow).PARAMETERS}
+    names = {parameter.name for parameter in flow.PARAMETERS}
     values = {name: value for name, value in header.items() if name in names} | _given(arguments)
-    expansion = flows.expand(arguments.flow, arguments.regime, arguments.order, **values)
+    expansion = expand(arguments.flow, arguments.regime, arguments.order, **values)
     missing = [name for name, value in expansion.parameters.items() if value is None]
     if expansion.gauge.name != "k" or missing:
         problem = f"needs {', '.join('--' + name for name in missing)}" if missing else "is not a series in k"
@@ -240,18 +243,16 @@ def _judge(comparison: Any) -> int:
 
 
 def _load(name: str) -> Any:
+    if name not in names():
+        raise BadUsage(f"unknown flow {name!r}{nearest(name, names())}; flows: {', '.join(names())}")
     from . import flows
 
-    if name not in flows.names():
-        raise BadUsage(f"unknown flow {name!r}{nearest(name, flows.names())}; flows: {', '.join(flows.names())}")
     return flows.load(name)
 
 
 def _nearest_flag(arguments: argparse.Namespace, unknown: str) -> str:
-    from . import flows
-
     name = getattr(arguments, "flow", None)
-    known = [parameter.flag for parameter in flows.load(name).PARAMETERS] if name in flows.names() else []
+    known = [parameter.flag for parameter in _load(name).PARAMETERS] if name in names() else []
     return nearest(unknown.partition("=")[0], known)
 
 

@@ -22,10 +22,6 @@ class LimitMismatch(AssertionError):
     """The limit is another one than expected, or k is too large to tell."""
 
 
-class TooFewPoints(ValueError):
-    """Not enough points where the difference exceeds the error of the numerics."""
-
-
 @dataclass(frozen=True, eq=False)
 class Part:
     """Real or imaginary part of a difference; `observed` is None where it is not judged, `silence` then says why.

@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .claims import claim_of
-from .comparison import PART_NAMES, LimitMismatch, TooFewPoints
+from .comparison import PART_NAMES, LimitMismatch
+from .errors import TooFewPoints
 from .explain import STEPS, extrapolate, is_astray
 from .points import DECADES, FEWEST, PARTS, check_part, points_of
 

@@ -5,9 +5,7 @@ from typing import Any
 
 import sympy as sp
 
-
-class BadParameter(ValueError):
-    """A parameter outside its range."""
+from .errors import BadParameter
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from .comparison import TooFewPoints
+from .errors import TooFewPoints
 
 FEWEST = 4
 NOISE = 3.0  # a difference counts only if it exceeds this many times the error of the numerics

@@ -1,8 +1,10 @@
 """Wavenumbers on the command line: a number, a list a,b,c, or a range a:b:n (log-spaced) or a:b:n:lin."""
 
 from math import isfinite
+from typing import TYPE_CHECKING
 
-import numpy as np
+if TYPE_CHECKING:
+    import numpy as np
 
 _MOST = 100_000
 
@@ -11,15 +13,19 @@ class BadSpec(ValueError):
     """Text that is no SPEC of positive numbers."""
 
 
-def parse_spec(text: str, name: str) -> np.ndarray:
+def parse_spec(text: str, name: str) -> "np.ndarray":
     """Return the positive values of a SPEC (count,); raises BadSpec, which names `name`."""
-    values = _range(text, name) if ":" in text else np.array([_number(part, name) for part in text.split(",")])
-    if not (values > 0).all():
-        raise BadSpec(f"{name}: values must be positive (got {values.min():g})")
-    return values
+    if ":" in text:
+        return _range(text, name)
+    values = [_number(part, name) for part in text.split(",")]
+    if not min(values) > 0:
+        raise BadSpec(f"{name}: values must be positive (got {min(values):g})")
+    import numpy as np
+
+    return np.array(values)
 
 
-def _range(text: str, name: str) -> np.ndarray:
+def _range(text: str, name: str) -> "np.ndarray":
     parts = text.split(":")
     linear = parts[3:] == ["lin"]
     if len(parts) != 3 and not linear:
@@ -33,6 +39,8 @@ def _range(text: str, name: str) -> np.ndarray:
     if start <= 0:
         raise BadSpec(f"{name}: a range of wavenumbers starts above 0 (got {text!r}); take "
                       f"{stop / 1000:g}:{stop:g}:{count}{':lin' if linear else ''}")
+    import numpy as np
+
     return (np.linspace if linear else np.geomspace)(start, stop, count)
 
 

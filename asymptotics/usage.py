@@ -5,6 +5,8 @@ import sys
 from difflib import get_close_matches
 from typing import Any, NoReturn
 
+from .catalogue import names
+
 
 class BadUsage(ValueError):
     """What the command line asks for cannot be done."""
@@ -45,10 +47,10 @@ class Help(argparse.Action):
         super().__init__(option_strings, argparse.SUPPRESS, nargs=0, default=argparse.SUPPRESS, help=help)
 
     def __call__(self, parser: Any, namespace: Any, values: Any, option_string: Any = None) -> None:
-        from . import flows
-
         group = namespace.parameters
-        if namespace.flow in flows.names():
+        if namespace.flow in names():
+            from . import flows
+
             flow = flows.load(namespace.flow)
             texts = {parameter.flag: f"{parameter.meaning}, {parameter.range}" for parameter in flow.PARAMETERS}
             group.title, group.description = f"parameters of {namespace.flow}", flow.SUMMARY
@@ -63,18 +65,20 @@ def nearest(name: str, known: Any) -> str:
     return f" (did you mean {match[0]!r}?)" if match else ""
 
 
-def add_parameters(verb: "Parser") -> None:
-    """Flags of every flow: a flow is a module that costs sympy, so only when a verb needs them."""
+def add_parameters(verb: "Parser", flags: bool) -> None:
+    """The group of the parameters, with the flags of every flow where they are needed: a flow costs sympy."""
+    group = verb.add_argument_group("parameters of the flow", f"listed by: {verb.prog} FLOW --help")
+    verb.set_defaults(parameters=group)
+    if not flags:
+        return
     from . import flows
 
-    group = verb.add_argument_group("parameters of the flow", f"listed by: {verb.prog} FLOW --help")
     known = {parameter.flag: parameter.name for name in flows.names() for parameter in flows.load(name).PARAMETERS}
     for flag, name in known.items():
         for spelling in dict.fromkeys((flag, f"--{name}")):
             if spelling in verb._option_string_actions:
                 continue  # the wavenumbers of evaluate
             group.add_argument(spelling, dest=f"parameter {name}", metavar="V", help=argparse.SUPPRESS)
-    verb.set_defaults(parameters=group)
 
 
 def positive(text: str, flag: str) -> float:

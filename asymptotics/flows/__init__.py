@@ -12,17 +12,14 @@ and nothing else needs to know about it.
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from importlib import import_module
-from pkgutil import iter_modules
 from typing import Any
 
 import sympy as sp
 
-from ..parameters import BadParameter, Parameter
+from ..catalogue import names
+from ..errors import BadParameter, NoSuchFlow
+from ..parameters import Parameter
 from ..series import Expansion
-
-
-class NoSuchFlow(LookupError):
-    """The name is not a flow, or not a regime of it."""
 
 
 @dataclass(frozen=True)
@@ -57,10 +54,6 @@ class Regime:
         if foreign:
             return f"regime {name} takes no {', '.join(foreign)}; it takes {', '.join(self.parameters)}"
         return self.accepts(values)
-
-
-def names() -> list[str]:
-    return sorted(module.name for module in iter_modules(__path__))
 
 
 def load(name: str) -> Any:

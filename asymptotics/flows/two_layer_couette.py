@@ -11,9 +11,10 @@ from typing import Any
 
 import sympy as sp
 
+from ..errors import BadParameter
 from ..hierarchy import Hierarchy, Layer, long_wave
 from ..linearise import FIELDS, Linearisation, x, z
-from ..parameters import BadParameter, Parameter
+from ..parameters import Parameter
 from ..series import Expansion, power_of_i
 from . import Regime
 

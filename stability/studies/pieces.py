@@ -8,7 +8,6 @@ from .. import status
 from ..errors import StabilityError
 from ..flows.sources import faults
 from ..modes.memory import apart
-from .critical import critical_sweep
 from .dispersion import dispersion
 from .kmax import k_max_sweep
 
@@ -66,6 +65,8 @@ def _relation_rows(piece: Any, relation: Any) -> Iterator[Any]:
 
 
 def _neutral_rows(piece: Any) -> Iterator[Any]:
+    from .critical import critical_sweep
+
     def sweep(flows: Any) -> Any:
         return critical_sweep(flows, piece.vary, **piece.accuracy.settings)
 

@@ -4,6 +4,7 @@ A fresh process imports everything anew. One that is forked from this one has it
 single thread can be forked safely: that of the command, which begins `without_threads`, is one.
 """
 
+import gc
 import os
 import signal
 import sys
@@ -53,6 +54,8 @@ def processes(workers: int, may_fork: bool) -> Iterator[Any]:
     forked = may_fork and _alone()
     if not forked and getattr(sys.modules["__main__"], "__file__", None) == "<stdin>":
         raise ParameterError(f"workers: each process runs the script anew: {GUARD}")
+    if forked:
+        gc.freeze()  # what the processes share is not to be copied because it was looked through
     context = get_context("fork" if forked else "spawn")
     theirs, ours = context.Pipe(duplex=False)
     pool, first = ProcessPoolExecutor(workers, context, _begin, (theirs, ours if forked else None)), []

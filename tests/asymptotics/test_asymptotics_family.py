@@ -9,9 +9,9 @@ import pytest
 import sympy as sp
 
 from asymptotics import expand
+from asymptotics.errors import BadParameter
 from asymptotics.flows import film, rollwave, two_layer_couette
 from asymptotics.limits import OrderMismatch, assert_order
-from asymptotics.parameters import BadParameter
 from stability import dispersion, flows
 from stability.errors import ModeLost
 

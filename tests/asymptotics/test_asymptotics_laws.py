@@ -9,9 +9,9 @@ import sympy as sp
 
 from asymptotics import assert_order, bed, expand, thin
 from asymptotics.cli import main as asymptotics
+from asymptotics.errors import BadParameter
 from asymptotics.flows.dune import b, leading_flux, saturating_flux
 from asymptotics.limits import OrderMismatch
-from asymptotics.parameters import BadParameter
 from stability import dispersion, flows
 from stability.cli import main as stability
 

@@ -9,7 +9,8 @@ import pytest
 import sympy as sp
 
 from asymptotics import expand
-from asymptotics.comparison import LimitMismatch, OrderMismatch, TooFewPoints
+from asymptotics.comparison import LimitMismatch, OrderMismatch
+from asymptotics.errors import TooFewPoints
 from asymptotics.leading import assert_limit
 from asymptotics.limits import assert_order, compare
 from stability import dispersion, flows

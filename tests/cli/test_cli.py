@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from importlib.metadata import entry_points
 
 import pytest
 from scipy.io import netcdf_file
@@ -547,3 +548,15 @@ def test_light_verbs_import_no_heavy_packages():
             f"print([name for name in {heavy} if name in set(sys.modules) - before])")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.endswith("[]\n")
+
+
+@pytest.mark.parametrize("package", ["stability", "asymptotics"])
+def test_the_command_that_is_installed_is_the_module(package, monkeypatch):
+    """It ends with the status of `main`, and what is left then is not looked through."""
+    (script,) = (one for one in entry_points(group="console_scripts") if one.name == package)
+    frozen = []
+    monkeypatch.setattr("gc.freeze", lambda: frozen.append(True))
+    monkeypatch.setattr(f"{package}.__main__.main", lambda: 3)
+    with pytest.raises(SystemExit) as end:
+        script.load()()
+    assert (end.value.code, frozen) == (3, [True])
