@@ -93,7 +93,9 @@ class Layer:
 
     `profile(s)` returns its base flow. `singular` is the number of edges at which the leading
     coefficient of the shear-rate equation vanishes: each replaces one condition (the bounded
-    solution is the one that the series can represent). `steady` drops the time derivative.
+    solution is the one that the series can represent). `steady` drops the time derivative. `growth` tells how
+    many coefficients its fields are likely to need: so many for long waves, and how many more times k; without it, as
+    many as in the layer that needs most.
 
     `name` is that of its `edges`. Heights are in L, as all else in the scales of the flow. Raises NotSmooth where a
     profile has a kink, a step or no finite values.
@@ -110,6 +112,7 @@ class Layer:
     profile: Callable[..., Profile]
     singular: int = 0
     steady: bool = False
+    growth: tuple[int, float] | None = None
 
     def height(self, s: np.ndarray) -> np.ndarray:
         """Distance of the points 0 <= s <= 1 from the lower edge: the integral of dz/ds.

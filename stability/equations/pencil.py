@@ -60,7 +60,7 @@ def weights_of(structure: "Structure", symbols: dict[str, tuple[Any, ...]]) -> "
 
 
 class Layout:
-    """Where unknowns and entries of the matrices of one degree lie, from a `table` that reaches it.
+    """Where unknowns and entries of the matrices of one degree lie, from a `table` of the structure that reaches it.
 
     Attributes: `size` rows and columns, of which `interior` are banded; `columns` and `rows` map unknowns and equations
     to index arrays of their coefficients, `orders` to the numbers of those; `last` (equations, 4) are the last rows of
@@ -70,8 +70,8 @@ class Layout:
     which parts are of B, and `sides` the first of A and the first of B.
     """
 
-    def __init__(self, table: "Table", degree: int) -> None:
-        self.table, self.structure, self.degree, self._common = table, table.structure, degree, {}
+    def __init__(self, table: "Table", degree: int, structure: "Structure") -> None:
+        self.table, self.structure, self.degree, self._common = table, structure, degree, {}
         columns, rows = self._maps = self._place(table)
         within = (table.column <= degree) & (table.row < rows.shape[1])
         places = rows[table.equation, np.where(within, table.row, 0)]
@@ -112,12 +112,13 @@ class Layout:
 
         Returns the places of columns (unknowns, degree + 1) and of rows (equations and conditions, ...).
         """
-        structure, width = table.structure, self.degree + 1
+        structure, width = self.structure, self.degree + 1
         equations, conditions = structure.rows[:structure.equations], len(structure.rows) - structure.equations
         extra = np.array([equation.extra for equation in equations])
         used = np.zeros((len(structure.unknowns), width), bool)
-        for unknown, first in enumerate(structure.first):
-            used[unknown, first:: structure.stride] = True
+        self.degrees = np.repeat(structure.degrees(self.degree), len(FIELDS)).tolist()
+        for unknown, (first, degree) in enumerate(zip(structure.first, self.degrees, strict=True)):
+            used[unknown, first: degree + 1: structure.stride] = True
         used[structure.fields:, 0] = True
         field, j = np.nonzero(used[: structure.fields])
         opposite = j >= 1 - extra[field]
@@ -145,8 +146,8 @@ class Layout:
         """Tell apart the rows of each equation, and number those beyond the degree."""
         structure, tails = self.structure, np.arange(-(-self.table.tail // self.structure.stride))
         self.rows, self.tails = {"conditions": rows[len(equations):, 0]}, len(tails) * len(equations)
-        for i, (equation, first) in enumerate(zip(equations, structure.first, strict=True)):
-            orders = np.arange(structure.stride - 1 - first, self.degree + equation.extra, structure.stride)
+        for i, (equation, first, degree) in enumerate(zip(equations, structure.first, self.degrees, strict=True)):
+            orders = np.arange(structure.stride - 1 - first, degree + equation.extra, structure.stride)
             self.orders[equation.name], self.rows[equation.name] = orders, rows[i, orders]
             rows[i, orders[-1] + structure.stride * (1 + tails)] = self.size + i * len(tails) + tails
         self.last = np.array([self.rows[equation.name][-_LAST:] for equation in equations])

@@ -8,6 +8,7 @@ from cmath import isfinite
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from math import ceil, log2
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -25,6 +26,7 @@ _PROPORTIONAL = 1e-12  # relative difference of ratios that is rounding: two con
 _FEW = 8  # terms of a series up to which each of them counts
 _MANY = 3  # layers from which on longer series have lengths that others share: their blocks are full anyway
 _LENGTHS, _STEP = (16, 32), 4  # those lengths, and how far apart they are beyond
+_LEAST, _STEPS = 0.35, 2  # of growths over the largest: the smallest that is told apart, and steps in an octave
 _SYMMETRIC = 1e-13  # largest coefficient of the wrong parity, relative, in a layer that is its own mirror image
 _EQUATIONS = ("shear rate", "continuity", "momentum along", "momentum across")
 
@@ -58,7 +60,8 @@ class Structure:
     The first `fields` of the `unknowns` are fields, the others surfaces; `longest` is that of `System`. `parts` are the
     monomials, those from `first_b` on with the rate; `powers` (parts, symbols) counts the other `symbols` in them.
     Where w has a `reflection`, 1 or -1, of the T-coefficients of every field and residual either the even or the odd
-    ones vanish; it is 0 where all count.
+    ones vanish; it is 0 where all count. `growths` (layers,) are those of `Layer`, their
+    second numbers relative to the largest.
     """
 
     unknowns: tuple
@@ -67,6 +70,12 @@ class Structure:
     longest: int
     rows: tuple
     reflection: int = 0
+    growths: tuple[tuple[int, float] | None, ...] = ()
+
+    @cached_property
+    def plain(self) -> "Structure":
+        """The same without the growths: tables of entries do not depend on them."""
+        return _the_one(replace(self, growths=(None,) * len(self.growths)))
 
     @property
     def stride(self) -> int:
@@ -78,12 +87,17 @@ class Structure:
         """The first coefficient that counts of each field; of its equation it is the other one, 0 or 1."""
         return tuple(int(self.reflection * ODD_WITH_W[field % len(FIELDS)] < 0) for field in range(self.fields))
 
+    def degrees(self, degree: int) -> list[int]:
+        """That of each layer where none has a larger one than this `degree`: all are for waves equally short."""
+        short = min((max(degree - plain, 0) / more for plain, more in filter(None, self.growths)), default=0.0)
+        return [min(degree, ceil(growth[0] + growth[1] * short)) if growth else degree for growth in self.growths]
+
     def __hash__(self) -> int:
         return self._hash
 
     @cached_property
     def _hash(self) -> int:
-        return hash((self.unknowns, self.rows, self.reflection))
+        return hash((self.unknowns, self.rows, self.reflection, self.growths))
 
     @cached_property
     def parts(self) -> tuple[Any, ...]:
@@ -118,7 +132,9 @@ class System:
         given = flow.conditions(edges, names)
         _check_conditions(flow, given)
         self.conditions = tuple(self._terms(form) for form in given)
-        self.dynamic_layers = sum(not layer.steady for layer in layers)
+        self.dynamic = tuple(not layer.steady for layer in layers)
+        self._growths = tuple(layer.growth for layer in layers)
+        self.growths = _relative(self._growths)
         _check_count(flow, layers, len(self.conditions))
         if self.reflection:
             self.equations = _mirrored(flow, layers, self.equations)
@@ -137,7 +153,7 @@ class System:
                                                      for unknown, monomial, series in terms))
                       for name, extra, terms in rows)
         return _the_one(Structure((*self.fields, *self.surfaces), len(self.fields), len(self.equations), self.longest,
-                                  terms, self.reflection))
+                                  terms, self.reflection, self.growths))
 
     @cached_property
     def coefficients(self) -> np.ndarray:
@@ -146,10 +162,14 @@ class System:
         return np.concatenate([series[_places(series)] for terms in rows for *_, series in terms])
 
     def __eq__(self, other: Any) -> Any:
-        return self.reflection == other.reflection and _same(self.equations, other.equations) and _same(
-            self.conditions, other.conditions)
+        alike = (self.reflection, self.growths) == (other.reflection, other.growths)
+        return alike and _same(self.equations, other.equations) and _same(self.conditions, other.conditions)
 
     __hash__ = None  # type: ignore[assignment]
+
+    def likely_degree(self, k: float) -> float:
+        """What the layers that tell how their series grow are likely to need at wavenumber k; 0 where none does."""
+        return max((plain + more * k for plain, more in filter(None, self._growths)), default=0.0)
 
     @property
     def longest(self) -> int:
@@ -194,6 +214,17 @@ def _split(names: tuple[str, ...], known: tuple[str, ...]) -> tuple[str, tuple[s
         raise ParameterError("equations and conditions must be linear in the unknowns and in the rate: got "
                              f"{'*'.join(names) or 'a constant'}")
     return unknowns[0], tuple(name for name in names if name != unknowns[0])
+
+
+def _relative(growths: tuple[tuple[int, float] | None, ...]) -> tuple[tuple[int, float] | None, ...]:
+    """The growths of layers for waves equally short, roughly: flows that are nearly the same are to have the same."""
+    most = max((growth[1] for growth in filter(None, growths)), default=0.0)
+    return tuple(growth and (growth[0], _roughly(growth[1] / most)) for growth in growths)
+
+
+def _roughly(share: float) -> float:
+    """One of a few numbers that is not smaller."""
+    return 2 ** (ceil(_STEPS * log2(max(share, _LEAST))) / _STEPS)
 
 
 def _same(one: Any, other: Any) -> bool:

@@ -27,6 +27,7 @@ from ..errors import ParameterError
 from ..numerics.chebyshev import at_points
 from ..numerics.smooth import Rough, fit
 from .base import parameter
+from .growth import growths, nodes, swaying, turning
 from .law import Law
 
 _REST = 1e-8  # inertial number at which friction of a law with a yield stress is to rise linearly
@@ -100,6 +101,7 @@ class Piece:
     singular: bool  # whether its lower edge is the yield surface
     low: float  # velocity at the lower edge
     series: Any  # of the velocity above it
+    phases: tuple[float, float]  # of waves without and with inertia, where grains creep
 
     def velocity(self, s: Any) -> Any:
         """U at the points s; it rises from the lower edge."""
@@ -120,8 +122,16 @@ def pieces(law: Law, shields: float, creep: float) -> tuple[Piece, ...]:
     found: list[Piece] = []
     for heights, series in zip(parts, _velocities(law, tau, parts), strict=True):
         low = found[-1].top if found else 0.0
-        found.append(Piece(heights, law.yields and not found, low, series))
+        phases = (0.0, 0.0) if law.yields else _phases(law, tau, heights, float(C.chebval(1.0, series)))
+        found.append(Piece(heights, law.yields and not found, low, series, phases))
     return tuple(found)
+
+
+def _phases(law: Law, tau: float, heights: "Creeping", rise: float) -> tuple[float, float]:
+    """Of waves without and with inertia, for a density of 1, across a piece where the velocity grows by `rise`."""
+    zeta, inertial, stretch, slope = heights.at(law, tau, nodes()[0])
+    return (turning(2 * zeta * stretch, tau / zeta**2, inertial, slope),
+            swaying(2 * zeta * stretch, 1.0, rise, slope * zeta))
 
 
 def _yielding(law: Law, tau: float, shields: float) -> "list[Sinking]":
@@ -211,8 +221,11 @@ def layers(law: Law, shields: float, creep: float, inertia: float = 1.0) -> tupl
     """The layers of the bed from below; the uppermost is called bed, those below it bed_2, bed_3 ..."""
     tau, parts = law.rest * shields, pieces(law, shields, creep)
     names = [f"bed_{number}" for number in range(len(parts), 1, -1)] + ["bed"]
-    return tuple(Layer(name, profile(law, tau, piece, inertia), singular=int(piece.singular))
-                 for name, piece in zip(names, parts, strict=True))
+    grow: Any = [None] * len(parts) if law.yields else growths(
+        [len(piece.series) for piece in parts], [piece.phases[0] for piece in parts],
+        [np.sqrt(inertia) * piece.phases[1] for piece in parts])
+    return tuple(Layer(name, profile(law, tau, piece, inertia), singular=int(piece.singular), growth=growth)
+                 for name, piece, growth in zip(names, parts, grow, strict=True))
 
 
 def below(edges: Any, count: int, yields: bool) -> tuple:

@@ -115,7 +115,8 @@ class Chute(Saturated):
             if isinstance(getattr(names, "k", None), Form):
                 beds.check_rest(law, self.name)
             return tuple(found)
-        return tuple(Layer(one.name, self._weighted(one.profile, zone), int(law.yields and zone is zones[-1]))
+        return tuple(Layer(one.name, self._weighted(one.profile, zone), int(law.yields and zone is zones[-1]),
+                           growth=one.growth)
                      for one, zone in zip(found, zones, strict=True))
 
     @property

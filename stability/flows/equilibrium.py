@@ -15,6 +15,7 @@ from ..errors import ParameterError
 from ..numerics.smooth import Rough, fit
 from .base import parameter
 from .granular import Granular
+from .growth import growths, nodes, swaying, turning
 from .law import Law
 from .laws import Saturating
 
@@ -44,6 +45,7 @@ def sheared_layers(law: Law, parts: list[tuple[str, Callable[[Any], Equilibrium]
     surface that is no integer: heights crowd there then.
     """
     low, found = 0.0, []
+    velocities: list[np.ndarray] = []
     for name, plain in parts:
         for state in (plain, partial(_crowded, plain, 0), partial(_crowded, plain, 1)):
             try:
@@ -58,7 +60,21 @@ def sheared_layers(law: Law, parts: list[tuple[str, Callable[[Any], Equilibrium]
         series = C.chebint(one.series[0], lbnd=-1) / 2
         found.append(Layer(name, _profile(law, state, series, low, inertia)))
         low += float(C.chebval(1.0, series))
-    return found
+        velocities.append(series)
+    return found if law.yields else _growing(law, found, [plain for _, plain in parts], velocities, inertia)
+
+
+def _growing(law: Law, layers: list[Layer], states: list[Callable[[Any], Equilibrium]], velocities: list[np.ndarray],
+             inertia: float) -> list[Layer]:
+    """The layers of a creeping flow, with the growth of their series."""
+    slow, swift = [], []
+    for state, series in zip(states, velocities, strict=True):
+        one = state(nodes()[0])
+        slope = law.slope(one.inertial)
+        slow.append(turning(one.dz, one.stress / one.pressure, one.inertial, slope))
+        swift.append(swaying(one.dz, inertia, float(C.chebval(1.0, series)), slope * np.sqrt(one.pressure) / one.scale))
+    grow = growths([len(series) for series in velocities], slow, swift)
+    return [replace(layer, growth=growth) for layer, growth in zip(layers, grow, strict=True)]
 
 
 def _crowded(state: Any, end: Any, s: Any) -> Any:

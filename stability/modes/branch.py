@@ -144,7 +144,7 @@ class Branch:
                 rate = hermite(nodes, index, log(k))
                 seen = self._rough.foreseen(k, rate, _DRIFT)
                 guess = seen or self._interpolated(nodes, index, k, rate)
-                degree = None if seen else self._likely_degree(nodes[index: index + 2], known)
+                degree = None if seen else self._likely_degree(k, nodes[index: index + 2], known)
                 mode = self._solved(k, guess.rate, (guess.degree, guess.x, guess.y), degree)
                 if mode and _near(mode, near, rate) and abs(self.solver.overlap(near, mode) - 1) < _ASTRAY:
                     return mode
@@ -159,9 +159,9 @@ class Branch:
         _, (x,), (y,) = interpolated(self.solver, nodes, index, np.log([k]), degree)
         return SimpleNamespace(rate=rate, degree=degree, x=x, y=y)
 
-    def _likely_degree(self, nodes: "list[Mode]", known: "Mode | None") -> int:
-        """The degree to try first between nodes."""
-        degrees = [self.solver.next_degree(known)] if known else []
+    def _likely_degree(self, k: float, nodes: "list[Mode]", known: "Mode | None") -> int:
+        """The degree to try first at k, between nodes."""
+        degrees = [self.solver.next_degree(known) if known else self.solver.expected_degree(k)]
         return max([*degrees, *(self.solver.likely_degree(node) for node in nodes)])
 
     def _solved(self, k: float, rate: complex, vectors: tuple[int, np.ndarray, np.ndarray],

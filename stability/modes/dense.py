@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Any
 from weakref import proxy
 
 import numpy as np
-from scipy.linalg import qr
+from scipy.linalg import lapack
 
 from ..equations.condensed import sparing
+from ..equations.layer import FIELDS
 from ..errors import ModeLost
 
 if TYPE_CHECKING:
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 _LARGEST = 1300  # unknowns of a dense problem
 _SHIFT = 0.01 - 0.013j  # tried when the pencil is singular at rate 0
 _SINGULAR = 1e14  # ratio of the two largest theta above which rate 0 is taken for an eigenvalue
+_QR = {"f": (lapack.dgeqp3, lapack.dormqr), "c": (lapack.zgeqp3, lapack.zunmqr)}
+_WORK = 32  # columns that LAPACK treats at once
 _SMALL = 10  # degree of the pencil whose finite eigenvalues are counted
 
 
@@ -37,7 +40,7 @@ def dense_degrees(solver: "Solver", first: int, step: int = 1) -> list[int]:
 def unknowns(solver: "Solver", degree: int) -> int:
     """How many there are at a degree, roughly."""
     structure = solver.assembly.system.structure
-    return degree * structure.fields // structure.stride
+    return len(FIELDS) * sum(structure.degrees(degree)) // structure.stride
 
 
 def finite_rates(solver: "Solver", degree: int, symbols: dict[str, tuple[Any, ...]]) -> np.ndarray:
@@ -74,11 +77,15 @@ def _theta(pencil: Any, weights: Any, rank: Any = None) -> Any:
 
 
 def _eigenvalues(g: np.ndarray, rank: int | None) -> np.ndarray:
-    """Eigenvalues of g; the non-zero ones alone from g = q r, which has those of r q."""
+    """Eigenvalues of g; the non-zero ones alone from g = q r, which has those of r q: of both `rank` lines count."""
     if rank is None or rank >= len(g):
         return np.linalg.eigvals(g)
-    q, r, order = qr(g, pivoting=True, check_finite=False)
-    return np.linalg.eigvals(r[:rank] @ q[order, :rank])
+    count = len(g)
+    factor, times = _QR[g.dtype.kind]
+    reflectors, order, scales, *_ = factor(g, lwork=_WORK * (count + 1))
+    r = np.zeros((rank, count), g.dtype, order="F")
+    r[:, order - 1] = np.triu(reflectors[:rank])
+    return np.linalg.eigvals(times("R", "N", reflectors[:, :rank], scales[:rank], r, lwork=_WORK * count)[0][:, :rank])
 
 
 def _finite_count(solver: "Solver", degree: int) -> int:
@@ -87,7 +94,8 @@ def _finite_count(solver: "Solver", degree: int) -> int:
     stride = system.structure.stride
     small = _SMALL + (degree - _SMALL) % stride
     count = smallest_count(Pattern(system.pattern, small, proxy(solver.assembly)))
-    return count + (degree - small) // stride * system.dynamic_layers
+    more = zip(system.dynamic, system.structure.degrees(degree), strict=True)
+    return count + sum((own - small) // stride for dynamic, own in more if dynamic)
 
 
 @dataclass(frozen=True)

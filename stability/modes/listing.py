@@ -96,7 +96,7 @@ class _Class:
     def refined(self, line: float) -> list[Any]:
         """The modes above the line; None in place of those that the iteration leaves; those of a cut are put aside."""
         above = self.rates.real > line
-        modes = [self._refined(rate) for rate in self.rates[above]]
+        modes = self._each(self.rates[above])
         if self.solver.flow.unbounded:
             cut = np.array([belongs_to_cut(self.solver, mode) if mode else rate.real < 0
                             for mode, rate in zip(modes, self.rates[above], strict=True)], dtype=bool)
@@ -104,9 +104,18 @@ class _Class:
             modes = [mode for mode, aside in zip(modes, cut, strict=True) if not aside]
         return modes
 
-    def _refined(self, rate: complex) -> "Mode | None":
+    def _each(self, rates: np.ndarray) -> "list[Mode | None]":
+        """The modes to which these rates lead; where one has needed a larger degree, those after it start there."""
+        modes: list[Mode | None] = []
+        degree = self.enough
+        for rate in rates:
+            modes.append(self._refined(rate, degree))
+            degree = max(degree, modes[-1].degree if modes[-1] else 0)
+        return modes
+
+    def _refined(self, rate: complex, degree: int) -> "Mode | None":
         try:
-            mode = self.solver.solve(self.k, rate, None, self.enough)
+            mode = self.solver.solve(self.k, rate, None, degree)
         except ModeLost:
             return None
         return mode if abs(mode.rate - rate) < _LEAP * abs(rate) else None
@@ -114,7 +123,7 @@ class _Class:
     def tried(self, line: Any) -> Any:
         """Modes to which the rates above the line lead, or those of the degree before did."""
         rates = np.concatenate((self.rates, self.before))
-        return [self._refined(rate) for rate in rates[rates.real > line]]
+        return [self._refined(rate, self.enough) for rate in rates[rates.real > line]]
 
     def missing(self, modes: list[Any], line: float) -> int:
         """How many eigenvalues above the line are not among these modes."""

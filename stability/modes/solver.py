@@ -86,7 +86,7 @@ class Assembly:
         if size * structure.longest <= _LARGE:
             return _LAYOUTS[size * structure.longest > _SMALL](structure, degree, size)
         large = (table for table in self._values if table.degree == size)
-        return Layout(next(large, None) or Table(structure, size), degree)
+        return Layout(next(large, None) or Table(structure.plain, size), degree, structure)
 
     def serving(self, flow: "Flow") -> "Assembly":
         """Return this assembly if its equations are those of `flow` too, else a new one.
@@ -100,7 +100,8 @@ class Assembly:
 def _layouts(layouts: int, tables: int) -> Callable[..., Layout]:
     """A function of structure, degree and size of the table that keeps so many layouts and tables."""
     table_of = lru_cache(maxsize=tables)(Table)
-    return lru_cache(maxsize=layouts)(lambda structure, degree, size: Layout(table_of(structure, size), degree))
+    return lru_cache(maxsize=layouts)(
+        lambda structure, degree, size: Layout(table_of(structure.plain, size), degree, structure))
 
 
 _LAYOUTS = tuple(_layouts(*kept) for kept in _KEPT)
@@ -213,6 +214,11 @@ class Solver:
         """The first degree at which a field has as many coefficients as at degree `least` where all of them count."""
         least *= self.assembly.system.structure.stride
         return next((degree for degree in self.degrees if degree >= least), self.degrees[-1])
+
+    def expected_degree(self, k: float) -> int:
+        """The largest degree that the flow says its series are likely to need at k, or the smallest of all."""
+        likely = self.assembly.system.likely_degree(k)
+        return max((degree for degree in self.degrees if degree <= likely), default=self.degrees[0])
 
     def likely_degree(self, mode: Mode) -> int:
         """The degree to try first where this solver, or a rougher one, has found a mode: a higher one if its own is too

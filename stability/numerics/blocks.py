@@ -13,6 +13,7 @@ from .bordered import Places, phase
 
 _FULL = 1.25, 0.5  # width of a band over the size of the largest block above which blocks are faster (measured) ...
 _WIDE, _LARGEST = 128, 512  # the former for any band, the latter for one so wide; size of blocks up to which
+_WIDE_RIGHT = 32  # columns from which on it pays to see which of them a block meets
 _BLOCK = {"f": (lapack.dgetrf, lapack.dgetrs), "c": (lapack.zgetrf, lapack.zgetrs)}
 
 
@@ -83,10 +84,20 @@ class BlockFactors:
 
     def solve(self, right: np.ndarray, trans: int = 0) -> np.ndarray:
         """Return z with M z = right, or M^T z = right."""
+        if right.ndim > 1 and right.shape[1] >= _WIDE_RIGHT:
+            return self._apart(right, trans)
         if len(self._factors) == 1:
             return self._solve(*self._factors[0], right, trans=trans)[0]
         return np.concatenate([self._solve(*factors, right[rows], trans=trans)[0]
                                for factors, (rows, *_) in zip(self._factors, self._parts, strict=True)])
+
+    def _apart(self, right: np.ndarray, trans: int) -> np.ndarray:
+        """The same for each block with the columns that are not 0 in its rows: of many, few may be."""
+        found = np.zeros(right.shape, np.result_type(right, self._factors[0][0]))
+        for factors, (rows, *_) in zip(self._factors, self._parts, strict=True):
+            used = np.flatnonzero(right[rows].any(axis=0))
+            found[rows, used] = self._solve(*factors, right[rows, used], trans=trans)[0]
+        return found
 
     def coupled(self, right: np.ndarray) -> np.ndarray:
         """Return z with M z = right, the border beside the interior: of that each block meets a few columns."""

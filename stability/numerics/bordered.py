@@ -14,7 +14,7 @@ import numpy as np
 from scipy.linalg import lapack
 from scipy.sparse import csr_array
 
-from .stack import product, with_data
+from .stack import with_data
 
 _CHUNK = 1 << 15  # numbers that are brought from columns to rows at once
 UNEVEN = 1e6  # largest entry of a sum above which its rows and columns are scaled
@@ -104,7 +104,7 @@ class Bordered:
         column near 1: an unknown that is tiny beside the others would else be found with few digits of its own.
         Elsewhere the scales are None.
         """
-        values, scales = product(self._matrix, weights), None
+        values, scales = self._matrix @ weights, None
         if np.abs(values.view(float)).max(initial=0) > UNEVEN:
             used = self.places.used
             scales = self._scales(np.abs(values[used]))
@@ -113,15 +113,15 @@ class Bordered:
 
     def sums(self, weights: Any) -> Any:
         """Return the blocks of the sums at many points, weights (parts, points), unscaled, and which are uneven."""
-        values = np.empty(weights.shape[1:] + self._matrix.shape[:1], np.result_type(self._matrix, weights))
+        values = np.empty(weights.shape[1:] + self._matrix.shape[:1], np.result_type(self._matrix.dtype, weights))
         few = max(1, _CHUNK // len(values.T))
         for first in range(0, len(values), few):
-            values[first: first + few] = product(self._matrix, weights[:, first: first + few]).T
+            values[first: first + few] = (self._matrix @ weights[:, first: first + few]).T
         return self.places.blocks(values), _uneven(values, self._largest @ np.abs(weights))
 
     def along(self, weights: Any, rates: Any) -> Any:
         """The `sums` for weights[:, 0] + rate weights[:, 1] at many rates."""
-        start, slope = product(self._matrix, weights).T
+        start, slope = (self._matrix @ weights).T
         values = np.multiply.outer(rates, slope)
         values += start
         return self.places.blocks(values), _uneven(values, np.abs(start).max() + np.abs(rates) * np.abs(slope).max())

@@ -29,7 +29,8 @@ _FACTORISATIONS = 12
 _ROUNDS = 3  # of factorisations at many points
 _CORRECTIONS = 12
 VECTOR = 1e-9  # error of a vector, and so of the slope, that is accepted
-_ALONE = 40  # degree from which on a single eigenvalue is sought in what is condensed of a pencil: that takes a while
+_ALONE = 80, 40  # degree from which on a single eigenvalue is sought in what is condensed of a pencil: that takes a
+# while, and pays where vectors are to be so accurate that several factorisations are likely
 _sum = np.add.reduce  # over the parts
 _OFFSET = 1e-3  # of a factorisation for corrections from its rate: it must not be singular
 
@@ -72,7 +73,8 @@ def refine(pencil: Any, weights: Any, rate: complex, x: np.ndarray | None = None
     wrong by `accuracy` at most, the rate by its square: less is right for a rough look.
     """
     x, y = (_start(pencil.size) if vector is None else vector for vector in (x, y))
-    inner, own, x, y = _inside(pencil.condensed if pencil.degree >= _ALONE else None, pencil, weights, x, y.conj())
+    pays = pencil.degree >= _ALONE[accuracy < VECTOR]
+    inner, own, x, y = _inside(pencil.condensed if pays else None, pencil, weights, x, y.conj())
     arithmetic = inner.arithmetic
     for _ in range(_FACTORISATIONS):
         if pencil.real and not np.imag(rate):

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.sparse import csc_array, csr_array
 
 _BLOCK = 24  # lines
+_ENOUGH = 4  # points from which on it pays to make a real matrix of a complex one
 
 
 class Lines:
@@ -30,10 +31,26 @@ class Lines:
         self._places = csr_array((np.zeros(len(key)), column[self._order], np.append(first, len(key))),
                                  (len(first), shape[1]))
         self._parts, self.rows = parts, shape[0]
+        self._apart: tuple[np.ndarray, Any] | None = None
 
     def matrix(self, value: np.ndarray) -> Any:
         """The sparse matrix (lines, columns) of entries with these values (entries,)."""
         return with_data(self._places, value[self._order])
+
+    def real(self, data: np.ndarray) -> Any:
+        """The real matrix [re im] of entries with this complex `data`, in the order of the lines, or re where no entry
+        is imaginary; None where one has both parts."""
+        imaginary = data.imag != 0
+        if np.any(imaginary & (data.real != 0)):
+            return None
+        if self._apart is None or not np.array_equal(self._apart[0], imaginary):  # all with this structure are alike
+            self._apart = imaginary, self._doubled(imaginary) if imaginary.any() else self._places
+        return with_data(self._apart[1], data.real + data.imag)
+
+    def _doubled(self, imaginary: np.ndarray) -> Any:
+        (rows, columns), places = self._places.shape, self._places
+        return csr_array((places.data, places.indices + (columns * imaginary).astype(places.indices.dtype),
+                          places.indptr), (rows, 2 * columns))
 
     @cached_property
     def addresses(self) -> tuple[int, ...]:
@@ -45,7 +62,9 @@ class Lines:
     def to_rows(self, values: np.ndarray) -> np.ndarray:
         """Sums of the values (lines, ...) of each row, (rows, ...)."""
         if self._by_row is not None:
-            return product(self._by_row, values)
+            if values.ndim > 1 and np.iscomplexobj(values):
+                return (self._by_row @ np.ascontiguousarray(values).view(float)).view(complex)
+            return self._by_row @ values
         total = np.zeros((self.rows, *values.shape[1:]), values.dtype)
         total[self.row] = values
         return total
@@ -93,6 +112,16 @@ class Stack:
         return self._matrix.T
 
     @cached_property
+    def _real(self) -> Any:
+        """The real matrix [re im], or re: M x = [re im] [x; i x] has the same digits and takes a third of the time."""
+        return self.lines.real(self._matrix.data) if np.iscomplexobj(self._matrix.data) else self._matrix
+
+    def _apart(self, vectors: np.ndarray) -> bool:
+        """Whether products with these are those of a real matrix."""
+        many = vectors.ndim > 1 and vectors.shape[1] >= _ENOUGH and np.iscomplexobj(vectors)
+        return many and self._real is not None
+
+    @cached_property
     def _squares(self) -> Any:
         return with_data(self._matrix, square(self._matrix.data))
 
@@ -102,7 +131,13 @@ class Stack:
 
     def times(self, x: np.ndarray) -> np.ndarray:
         """Products of every part with x: (lines, points), for the methods below."""
-        return product(self._matrix, x)
+        if not self._apart(x):
+            return self._matrix @ x
+        both = np.empty((self._real.shape[1], x.shape[1]), complex)
+        both[:len(x)] = x
+        if len(both) > len(x):
+            np.multiply(x, 1j, out=both[len(x):])
+        return (self._real @ both.view(float)).view(complex)
 
     def spread(self, weights: np.ndarray) -> np.ndarray:
         """Weights (parts, points) of the lines: (lines, points), for the methods below."""
@@ -114,7 +149,11 @@ class Stack:
 
     def total_left(self, spread: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Sum over the parts, weights times y^T part: (columns, points)."""
-        return product(self._transposed, spread * y[self.lines.row])
+        weighted = spread * y[self.lines.row]
+        if not self._apart(weighted):
+            return self._transposed @ weighted
+        count, both = self._matrix.shape[1], (self._real.T @ np.ascontiguousarray(weighted).view(float)).view(complex)
+        return both[:count] + 1j * both[count:] if len(both) > count else both
 
     def summed(self, weights: np.ndarray) -> tuple[Callable[..., Any], ...]:
         """Products of the sum of the parts, times weights (parts, ...), with vectors: functions of x, and of y."""
@@ -135,14 +174,6 @@ def with_data(matrix: Any, data: np.ndarray) -> Any:
     other = object.__new__(type(matrix))
     other.__dict__.update(matrix.__dict__, data=data)
     return other
-
-
-def product(matrix: Any, x: np.ndarray) -> Any:
-    """A sparse matrix times (columns,) or (columns, points), a real one as it is: scipy would make it complex first."""
-    if matrix.dtype.kind == "f" and x.dtype.kind == "c":
-        parts = np.ascontiguousarray(x).view(float).reshape(len(x), -1)
-        return (matrix @ parts).view(complex).reshape(-1, *x.shape[1:])
-    return matrix @ x
 
 
 def square(z: Any) -> Any:

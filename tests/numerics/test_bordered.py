@@ -12,12 +12,14 @@ INTERIOR, BORDER, PARTS = 30, 4, 2
 SIZE = INTERIOR + BORDER
 
 
-@pytest.fixture(params=[False, True], ids=["real", "complex"])
+@pytest.fixture(params=[0, 1, 2], ids=["real", "complex", "real or imaginary"])
 def matrices(request):
     """Two matrices with a band of 3 + 1 + 2 and a full border, in full and as entries in random order."""
     rng = np.random.default_rng(7)
     full = rng.standard_normal((PARTS, SIZE, SIZE)) + (1j * rng.standard_normal((PARTS, SIZE, SIZE)) * request.param)
     full = full if request.param else full.real
+    if request.param == 2:
+        full = np.where(rng.random(full.shape) < 0.5, full.real, 1j * full.imag)
     shift = np.arange(SIZE)[:, None] - np.arange(SIZE)
     banded = (shift <= 3) & (shift >= -2)
     banded[INTERIOR:] = banded[:, INTERIOR:] = True
@@ -40,10 +42,11 @@ def columns(count, seed):
     return rng.standard_normal((SIZE, count)) + 1j * rng.standard_normal((SIZE, count))
 
 
-def test_products_from_either_side(matrices):
+@pytest.mark.parametrize("points", [3, 9])
+def test_products_from_either_side(matrices, points):
     full, entries = matrices
     stack = stacked(*entries, PARTS, (SIZE, SIZE))
-    weights, x, y = columns(3, 8)[:PARTS], columns(3, 9), columns(3, 10)
+    weights, x, y = columns(points, 8)[:PARTS], columns(points, 9), np.asfortranarray(columns(points, 10))
     products, spread = stack.times(x), stack.spread(weights)
     np.testing.assert_allclose(stack.total(spread, products), np.einsum("pn,prc,cn->rn", weights, full, x), atol=1e-12)
     np.testing.assert_allclose(stack.total_left(spread, y), np.einsum("pn,rn,prc->cn", weights, y, full), atol=1e-12)
