@@ -105,8 +105,7 @@ class Bordered:
         Elsewhere the scales are None.
         """
         values, scales = self._matrix @ weights, None
-        numbers = values.view(float)
-        if max(numbers.max(initial=0), -numbers.min(initial=0)) > UNEVEN:
+        if np.abs(values.view(float)).max(initial=0) > UNEVEN:
             used = self.places.used
             scales = self._scales(np.abs(values[used]))
             values[used] *= scales[0][self.places.row] * scales[1][self.places.column]
