@@ -15,7 +15,6 @@ Where the blocks of layers are full this takes much less work; bands would fill.
 """
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,7 +27,7 @@ from .combination import Combination
 from .layer import FIELDS
 
 if TYPE_CHECKING:
-    from .pencil import Layout, Weights
+    from .pencil import Layout
 
 _GIVEN = tuple(FIELDS.index(name) for name in ("w", "n"))  # in this order: the equation of the second has the first
 _PIVOT = 2.0  # d phi_j / ds = 2 T_{j-1}
@@ -151,7 +150,7 @@ class Reduced:
                  for *_, product in keys}
         parts = sorted(set(names.values()), key=lambda names: ("rate" in names, names))
         self.first_b = sum("rate" not in one for one in parts)
-        self.carriers, self.sides = np.arange(len(parts)) >= self.first_b, np.array((0, self.first_b))
+        self.carriers = np.arange(len(parts)) >= self.first_b
         products = [next(product for product, name in names.items() if name == one) for one in parts]
         most = max(map(len, products))
         self.factors = np.array([[*one, *[len(structure.parts)] * (most - len(one))] for one in products])
@@ -172,15 +171,14 @@ class Reduced:
 class Condensed(Combination):
     """The condensed form S of a pencil whose entries in the layout have these values.
 
-    It has the `stack`, `powers`, `factors`, `b_products` and `arithmetic` of a pencil, for weights of its own parts;
-    `sides` are the first without and the first with the rate.
+    It has the `stack`, `powers`, `factors`, `b_products` and `arithmetic` of a pencil, for weights of its own parts.
     """
 
     def __init__(self, arrangement: Arrangement, value: np.ndarray) -> None:
         self._arrangement = arrangement
         blocks = _condensed(arrangement, value)
         self._where = arrangement.reduced(list(blocks))
-        self.first_b, self.sides = self._where.first_b, self._where.sides
+        self.first_b = self._where.first_b
         self._value = np.concatenate([block.ravel() for block in blocks.values()])
         self._carried = self._value[self._where.carrying]
         self._rows = Stack(arrangement.rows, value[arrangement.in_rows])
@@ -190,12 +188,9 @@ class Condensed(Combination):
     def arithmetic(self) -> Arithmetic:
         return Arithmetic(self)  # nothing is kept: what refers to itself would outlive its use
 
-    def weights(self, weights: "Weights") -> "Weights":
-        """The `Weights` of its parts for those of the parts of the pencil, without their spread."""
-        factors, one = self._where.factors, np.ones((1, *weights.value.shape[1:]))
-        value = np.concatenate((weights.value, one))[factors].prod(axis=1)
-        slopes = np.concatenate((weights.slope / weights.value, 0 * one))[factors].sum(axis=1)
-        return replace(weights, value=value, slope=value * slopes, spread=0 * value)
+    def weights(self, value: np.ndarray) -> np.ndarray:
+        """The weights of its parts, (parts, ...), for those of the parts of the pencil."""
+        return np.concatenate((value, np.ones((1, *value.shape[1:]))))[self._where.factors].prod(axis=1)
 
     def restricted(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The parts R of vectors x and y (without conjugation)."""

@@ -17,8 +17,10 @@ def winding(solver: Any, degree: Any, k: Any, known: Any, line: Any) -> Any:
     """How often the determinant over (rate - known) turns around the rates above the line."""
     pencil = solver.pencil(degree)
     weights = pencil.weights(solver.symbols(k))
-    inner, own = (pencil.condensed, pencil.condensed.weights(weights)) if pencil.condensed else (pencil, weights)
-    banded = _turns(lambda rates: _banded_phases(inner, own.value, np.array(rates)), known, line, 0)
+    inner, own = pencil, weights.value
+    if pencil.condensed:
+        inner, own = pencil.condensed, pencil.condensed.weights(own)
+    banded = _turns(lambda rates: _banded_phases(inner, own, np.array(rates)), known, line, 0)
     if banded is not None and abs(banded) < _FLAT:
         return 0
     a, b = pencil.pair(weights)
