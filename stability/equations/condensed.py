@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 
 _GIVEN = tuple(FIELDS.index(name) for name in ("w", "n"))  # in this order: the equation of the second has the first
 _PIVOT = 2.0  # d phi_j / ds = 2 T_{j-1}
-_SWEEPS = len(_GIVEN)  # after which P is inverted
 
 Key = tuple[int, int, tuple[int, ...]]  # a group of rows, one of columns, and the parts whose product is the weight
 
@@ -86,8 +85,8 @@ class Arrangement:
     """What the condensed pencils of one layout have in common: where entries lie before.
 
     `kept_rows`, `kept_columns` (kept,) and `given_rows`, `given_columns` (given,) are the places of R and E in vectors;
-    `rows` and `columns` tell where the entries in the rows, and in the columns, of E lie: those are `in_rows` and
-    `in_columns` of the entries of the layout.
+    `rows`, `columns` and `both` tell where the entries in the rows, in the columns, and of N lie: those are `in_rows`,
+    `in_columns` and `in_both` of the entries of the layout.
     """
 
     def __init__(self, layout: "Layout") -> None:
@@ -103,9 +102,14 @@ class Arrangement:
         where[self.given_rows] = np.arange(len(self.given_rows))
         self.rows = Lines(part[self.in_rows], where[row[self.in_rows]], column[self.in_rows], count,
                           (len(self.given_rows), layout.size))
+        given = groups.given[groups.row[row]] & groups.given[groups.column[column]]
+        self.in_both = np.flatnonzero(given & (groups.row[row] != groups.column[column]))
+        at_row = where[row[self.in_both]]
         where[self.given_columns] = np.arange(len(self.given_columns))
         self.columns = Lines(part[self.in_columns], row[self.in_columns], where[column[self.in_columns]], count,
                              (layout.size, len(self.given_columns)))
+        self.both = Lines(part[self.in_both], at_row, where[column[self.in_both]], count,
+                          (len(self.given_rows), len(self.given_columns)))
         self._place(part, row, column)
         self._reduced: Reduced | None = None
 
@@ -183,6 +187,7 @@ class Condensed(Combination):
         self._carried = self._value[self._where.carrying]
         self._rows = Stack(arrangement.rows, value[arrangement.in_rows])
         self._columns = Stack(arrangement.columns, value[arrangement.in_columns])
+        self._both = Stack(arrangement.both, value[arrangement.in_both])
 
     @property
     def arithmetic(self) -> Arithmetic:
@@ -198,13 +203,14 @@ class Condensed(Combination):
 
     def continued(self, weights: np.ndarray, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Vectors of the pencil from x_R and y_R, for the weights of its parts times powers of the rate."""
-        arrangement, rows, columns = self._arrangement, self._rows, self._columns
+        arrangement, rows, columns, both = self._arrangement, self._rows, self._columns, self._both
         full_x, full_y = (np.zeros((arrangement.size, *x.shape[1:]), vector.dtype) for vector in (x, y))
         full_x[arrangement.kept_columns], full_y[arrangement.kept_rows] = x, y
-        in_rows, in_columns = rows.spread(weights), columns.spread(weights)
-        for _ in range(_SWEEPS):
-            full_x[arrangement.given_columns] -= rows.total(in_rows, rows.times(full_x)) / _PIVOT
-            full_y[arrangement.given_rows] -= columns.total_left(in_columns, full_y) / _PIVOT
+        given_x = rows.total(rows.spread(weights), rows.times(full_x)) / -_PIVOT
+        given_y = columns.total_left(columns.spread(weights), full_y) / -_PIVOT
+        in_both = both.spread(weights)
+        full_x[arrangement.given_columns] = given_x - both.total(in_both, both.times(given_x)) / _PIVOT
+        full_y[arrangement.given_rows] = given_y - both.total_left(in_both, given_y) / _PIVOT
         return full_x, full_y
 
 
