@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from stability.numerics import stack as stack_module
 from stability.numerics.bordered import Bordered, Factors, ManyFactors, Places
 from stability.numerics.stack import Lines, Stack
 
@@ -43,7 +44,9 @@ def columns(count, seed):
 
 
 @pytest.mark.parametrize("points", [3, 9])
-def test_products_from_either_side(matrices, points):
+def test_products_from_either_side(matrices, points, monkeypatch):
+    """At nine points by real matrices, where no entry has both parts."""
+    monkeypatch.setattr(stack_module, "_ENOUGH", (9, 0))
     full, entries = matrices
     stack = stacked(*entries, PARTS, (SIZE, SIZE))
     weights, x, y = columns(points, 8)[:PARTS], columns(points, 9), np.asfortranarray(columns(points, 10))
