@@ -20,7 +20,7 @@ def matrices(request):
     full = rng.standard_normal((PARTS, SIZE, SIZE)) + (1j * rng.standard_normal((PARTS, SIZE, SIZE)) * request.param)
     full = full if request.param else full.real
     if request.param == 2:
-        full = np.where(rng.random(full.shape) < 0.5, full.real, 1j * full.imag)
+        full = np.where((rng.random(full.shape) < 0.5) | np.eye(SIZE, dtype=bool), full.real, 1j * full.imag)
     shift = np.arange(SIZE)[:, None] - np.arange(SIZE)
     banded = (shift <= 3) & (shift >= -2)
     banded[INTERIOR:] = banded[:, INTERIOR:] = True
