@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from stability.numerics import bordered as bordered_module
 from stability.numerics import stack as stack_module
 from stability.numerics.bordered import Bordered, Factors, ManyFactors, Places
 from stability.numerics.stack import Lines, Stack
@@ -77,7 +78,9 @@ def test_solves_from_either_side(matrices):
     np.testing.assert_allclose(factors.solve_left(matrix.T @ x), x, atol=1e-11)
 
 
-def test_solves_at_many_points_are_those_of_each(matrices):
+@pytest.mark.parametrize("entries_of_many", [0, 10**6], ids=["one by one", "together"])
+def test_solves_at_many_points_are_those_of_each(matrices, entries_of_many, monkeypatch):
+    monkeypatch.setattr(bordered_module, "_MANY", entries_of_many)
     full, entries = matrices
     bordered = in_a_band(*entries, PARTS, INTERIOR, BORDER)
     weights, f = np.array([[1.0, 0.5, 2.0], [-0.25, 0.1, 1e9]]), columns(3, 12)
