@@ -20,6 +20,11 @@ class Combination:
     _value: Any
     _carried: Any
 
+    @property
+    def entries(self) -> int:
+        """How many numbers the bordered matrix of one point takes."""
+        return self._where.places.count
+
     @cached_property
     def stack(self) -> Stack:
         return Stack(self._where.stack, self._value)
@@ -37,7 +42,10 @@ class Combination:
         return np.where(self._where.carriers[(...,) + (None,) * np.ndim(rate)], rate, 1.0)
 
     def factors(self, weights: np.ndarray, rate: Any) -> Any:
-        """Return LU factors of A - rate B for weights (parts,) of the parts, or (parts, points) and rates (points,)."""
+        """Return LU factors of A - rate B for weights (parts,) or (parts, points) of the parts, and rates (points,)."""
+        if np.ndim(rate) > weights.ndim - 1:
+            carriers = self._where.carriers
+            return ManyFactors(self._bordered, np.stack((weights * ~carriers, weights * carriers), axis=1), rate)
         kind = ManyFactors if np.ndim(rate) else Factors
         return kind(self._bordered, weights * self.powers(rate))
 

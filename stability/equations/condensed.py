@@ -11,17 +11,19 @@ the eigenvalues are those of S = H - G P^{-1} F: P^{-1} = 1/2 - N/4 is a polynom
 has the rate, but what it multiplies, continuity, has none, nor has G: S is linear in it as well, a smaller pencil, with
 products of the parts as its parts. Vectors of S are continued to E by P x_E = -F x_R and y_E P = -y_R G.
 
-Where the blocks of layers are full this takes much less work; bands would fill.
+Where the blocks of layers are full this takes much less work. Bands stay bands, since integrals and products with short
+series are; what it takes to form S then pays at many wavenumbers.
 """
 
 from collections.abc import Iterator
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.sparse import csr_array
 
 from ..numerics.arithmetic import Arithmetic
-from ..numerics.blocks import Blocks
+from ..numerics.blocks import whole
 from ..numerics.stack import Lines, Stack
 from .combination import Combination
 from .layer import FIELDS
@@ -52,6 +54,19 @@ def _outright(field: str, terms: Any) -> bool:
     return slopes == [(f"{field}'", (), (0,))] and field not in (unknown for unknown, *_ in terms)
 
 
+def sparing(layout: "Layout") -> bool:
+    """Whether a layout is condensed and the rate is then in half of the equations that have it.
+
+    That is so where the equations of v do without n, which brings the rate along.
+    """
+    structure = layout.structure
+    fields = [unknown.rpartition(".")[2] for unknown in structure.unknowns[:structure.fields]]
+    free = [row for row, field in zip(structure.rows, fields, strict=False) if field == FIELDS[0]]
+    return condensable(layout) and not any(
+        "rate" in monomial or unknown.rpartition(".")[2].strip("'") == FIELDS[_GIVEN[1]] for row in free
+        for unknown, monomial, _ in row.terms)
+
+
 class Groups:
     """The rows and columns of a layout by field: a group for each, of those in its interior, and the border behind.
 
@@ -75,10 +90,13 @@ class Groups:
             self.sizes[number] = len(inside)
 
     def sorted(self, group: np.ndarray, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The rows (or columns) of R, and those of E, group by group."""
+        """The rows (or columns) of R, as they lie in the layout, and those of E, group by group."""
         order = np.lexsort((place, group))
-        given = self.given[group[order]]
-        return order[~given], order[given]
+        return np.flatnonzero(~self.given[group]), order[self.given[group[order]]]
+
+    def within(self, group: np.ndarray, kept: np.ndarray) -> list[np.ndarray]:
+        """Where the rows (or columns) of each group lie among those that are kept."""
+        return [np.flatnonzero(group[kept] == number) for number in range(len(self.sizes))]
 
 
 class Arrangement:
@@ -111,7 +129,6 @@ class Arrangement:
         self.both = Lines(part[self.in_both], at_row, where[column[self.in_both]], count,
                           (len(self.given_rows), len(self.given_columns)))
         self._place(part, row, column)
-        self._reduced: Reduced | None = None
 
     def _place(self, part: np.ndarray, row: np.ndarray, column: np.ndarray) -> None:
         """Full blocks for every pair of groups and part: where they begin, and which entries add to them."""
@@ -133,23 +150,23 @@ class Arrangement:
         flat = self._sum @ value
         yield from ((key, flat[where].reshape(shape)) for key, where, shape in self._blocks)
 
-    def reduced(self, keys: list[Key]) -> "Reduced":
-        """Where the entries of S lie, blocks with these keys: the same for all pencils."""
-        if self._reduced is None or self._reduced.keys != keys:
-            self._reduced = Reduced(self, keys)
-        return self._reduced
+    @cached_property
+    def reduced(self) -> "Reduced":
+        """Where the entries of S lie, of all pencils: told by one whose values and products are not 0 by chance."""
+        return Reduced(self, _condensed(self, 1 + np.random.default_rng(1).random(self._sum.shape[1])))
 
 
 class Reduced:
-    """Where the entries of condensed pencils lie, blocks with these `keys` one after the other, row by row.
+    """Where the entries of condensed pencils lie, `blocks` like those of one of them one after the other, row by row.
 
     `factors` (parts, 3) are the parts of the pencil whose product is a part of S, a number beyond them standing for 1;
-    parts from `first_b` on have the rate. `stack`, `places` and `b` tell where the entries of S, of its bordered matrix
-    and those with the rate, `carrying`, lie.
+    parts from `first_b` on have the rate. `entries` are those of the blocks, one behind the other, that are not 0
+    by structure; `stack`, `places` and `b` tell where they, those of the bordered matrix and those with the rate,
+    `carrying`, lie. The rate is in `rate_rows` of the `size`.
     """
 
-    def __init__(self, arrangement: Arrangement, keys: list[Key]) -> None:
-        self.keys, structure, groups = keys, arrangement.structure, arrangement.groups
+    def __init__(self, arrangement: Arrangement, blocks: dict[Key, np.ndarray]) -> None:
+        structure, groups, keys = arrangement.structure, arrangement.groups, list(blocks)
         names = {product: tuple(sorted(name for one in product for name in structure.parts[one]))
                  for *_, product in keys}
         parts = sorted(set(names.values()), key=lambda names: ("rate" in names, names))
@@ -158,32 +175,35 @@ class Reduced:
         products = [next(product for product, name in names.items() if name == one) for one in parts]
         most = max(map(len, products))
         self.factors = np.array([[*one, *[len(structure.parts)] * (most - len(one))] for one in products])
-        sizes = np.where(groups.given, 0, groups.sizes)
-        starts = np.cumsum(sizes) - sizes
+        pattern = [block != 0 for block in blocks.values()]
+        self.entries = np.flatnonzero(np.concatenate([block.ravel() for block in pattern]))
+        rows_of = groups.within(groups.row, arrangement.kept_rows)
+        columns_of = groups.within(groups.column, arrangement.kept_columns)
         entries = []
-        for row, column, product in keys:
-            inside = np.indices((sizes[row], sizes[column])).reshape(2, -1) + starts[[row, column], None]
-            entries.append((np.full(inside.shape[1], parts.index(names[product])), *inside))
+        for (row, column, product), (i, j) in zip(keys, map(np.nonzero, pattern), strict=True):
+            entries.append((np.full(len(i), parts.index(names[product])), rows_of[row][i], columns_of[column][j]))
         part, rows, columns = (np.concatenate(one) for one in zip(*entries, strict=True))
-        size, border = len(arrangement.kept_rows), int(sizes[-1])
+        size, border = len(arrangement.kept_rows), int(groups.sizes[-1])
         self.stack = Lines(part, rows, columns, len(parts), (size, size))
-        self.places = Blocks(part, rows, columns, len(parts), size - border, border)
-        self.carrying = np.flatnonzero(part >= self.first_b)
+        self.places = whole(part, rows, columns, len(parts), size - border, border)
+        self.size, self.carrying = size, np.flatnonzero(part >= self.first_b)
+        self.rate_rows = np.unique(rows[self.carrying])
         self.b = Lines(part[self.carrying], rows[self.carrying], columns[self.carrying], len(parts), (size, size))
 
 
 class Condensed(Combination):
     """The condensed form S of a pencil whose entries in the layout have these values.
 
-    It has the `stack`, `powers`, `factors`, `b_products` and `arithmetic` of a pencil, for weights of its own parts.
+    It has the `stack`, `powers`, `factors`, `b_products` and `arithmetic` of a pencil, for weights of its own parts;
+    the rate is in `rate_rows` of the `size`.
     """
 
     def __init__(self, arrangement: Arrangement, value: np.ndarray) -> None:
         self._arrangement = arrangement
         blocks = _condensed(arrangement, value)
-        self._where = arrangement.reduced(list(blocks))
-        self.first_b = self._where.first_b
-        self._value = np.concatenate([block.ravel() for block in blocks.values()])
+        self._where = arrangement.reduced
+        self.first_b, self.size, self.rate_rows = self._where.first_b, self._where.size, self._where.rate_rows
+        self._value = np.concatenate([block.ravel() for block in blocks.values()])[self._where.entries]
         self._carried = self._value[self._where.carrying]
         self._rows = Stack(arrangement.rows, value[arrangement.in_rows])
         self._columns = Stack(arrangement.columns, value[arrangement.in_columns])

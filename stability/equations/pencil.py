@@ -32,7 +32,8 @@ if TYPE_CHECKING:
     from .system import Structure, System
     from .table import Table
 
-_CONDENSED = 16, 96  # degrees for which it pays to condense full blocks
+_CONDENSED = 16, 96  # degrees for which it pays to condense full blocks for one eigenvalue
+_MANY = 300, 2e-3  # points times terms for which it pays to condense anything: at least, and by the cube of the terms
 _ENDS = 4  # terms of a series, twice so many before them: they tell how fast it falls
 _LAST = 4  # rows of an equation whose left vector bounds that of the tail: the last two alone feel the truncation
 
@@ -96,9 +97,8 @@ class Layout:
 
     @cached_property
     def arrangement(self) -> Arrangement | None:
-        """How its pencils are condensed; None where that does not pay."""
-        worthwhile = isinstance(self.places, Blocks) and _CONDENSED[0] <= self.degree <= _CONDENSED[1]
-        return Arrangement(self) if worthwhile and condensable(self) else None
+        """How its pencils are condensed; None where they are not."""
+        return Arrangement(self) if condensable(self) else None
 
     def common(self, other: "Layout") -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
         """Which columns, and which rows, it has in common with another degree: for each, where here and where there."""
@@ -236,9 +236,25 @@ class Pencil(Combination):
 
     @cached_property
     def condensed(self) -> Condensed | None:
-        """The same eigenproblem with half the unknowns, where that pays."""
+        """The same eigenproblem with half the unknowns, where that pays even for a single eigenvalue."""
+        full = isinstance(self.layout.places, Blocks) and _CONDENSED[0] <= self.degree <= _CONDENSED[1]
+        return self.shortened if full else None
+
+    @cached_property
+    def shortened(self) -> Condensed | None:
+        """The same eigenproblem with half the unknowns, whether that pays or not; None where there is none."""
         arrangement = self.layout.arrangement
         return Condensed(arrangement, self._value) if arrangement else None
+
+    def condensed_for(self, points: int) -> Condensed | None:
+        """The `condensed` form where it pays for factors at so many points."""
+        terms = self.degree // self.layout.structure.stride
+        worthwhile = "shortened" in vars(self) or points * terms > _MANY[0] + _MANY[1] * terms**3
+        return self.shortened if worthwhile else self.condensed
+
+    def iterated(self, points: int) -> Condensed | None:
+        """The `condensed` form where it pays for eigenvalues at so many points: compiled code gains nothing from it."""
+        return self.condensed if library() else self.condensed_for(points)
 
     @property
     def _where(self) -> Layout:  # type: ignore[override]

@@ -19,6 +19,7 @@ import numpy as np
 from ..errors import ModeLost, ParameterError
 from ..flows.sources import shipped
 from .foresight import Foresight
+from .interpolation import hermite, interpolated, intervals
 from .solver import transfer
 from .tracking import Walk
 
@@ -35,6 +36,9 @@ _CONFIRMED = 3  # wavenumbers in a row, each a part of the last, at which it mus
 _NO_FARTHER = 1.5, 1e-3  # factor in its distance from the limit that each may have over the one before, and a floor
 _TENDS, _CLOSE = 0.5, 1e-3  # limit of the difference over that at the last of them where a law is wrong; its accuracy
 _GLANCE = 0.3  # relative distance of a rate from a long-wave limit at which a mode that is foreseen may be meant
+_SURE = 0.5  # part of the rounding of one mode that others have as well
+_BESIDE = 1 + 1e-9  # factor of a rate where its matrix is not singular, if it is one of a little larger degree
+_RISE = 0.9  # of the rise of a degree that is foreseen: what is needed is mostly a little less (measured)
 _FEW = 3  # wavenumbers between two nodes that are refined one by one
 _DRIFT = 0.01  # largest relative difference of a refined rate from its interpolation
 _ASTRAY = 0.5  # largest deviation of the overlap with the next node from 1
@@ -54,6 +58,7 @@ class Branch:
         self._rough = rough or solver.rough(_ROUGH)
         self._walks = {side: Walk(self._rough, start, solver) for side in (1, -1)}
         self.answers: dict[float, Mode] = {}
+        self._rounding = 0.0  # relative, of a mode that was refined: others are much like it
         self.lost = {}
 
     @property
@@ -136,12 +141,12 @@ class Branch:
             return near
         try:
             if len(nodes) > 1 and k != near.k:
-                rate = _hermite(nodes, index, log(k))
+                rate = hermite(nodes, index, log(k))
                 seen = self._rough.foreseen(k, rate, _DRIFT)
                 guess = seen or self._interpolated(nodes, index, k, rate)
                 degree = None if seen else self._likely_degree(k, nodes[index: index + 2], known)
                 mode = self._solved(k, guess.rate, (guess.degree, guess.x, guess.y), degree)
-                if mode and _near(mode, rate, near) and abs(self.solver.overlap(near, mode) - 1) < _ASTRAY:
+                if mode and _near(mode, near, rate) and abs(self.solver.overlap(near, mode) - 1) < _ASTRAY:
                     return mode
             mode = self._solved(near.k, near.rate, (near.degree, near.x, near.y)) or near
             return mode if k == near.k else Walk(self.solver, mode).to(k)
@@ -167,45 +172,81 @@ class Branch:
             return None
 
     def _together(self, wavenumbers: list[float]) -> "dict[float, Mode]":
-        """Modes at many wavenumbers: of those between two nodes of the walk some are refined one by one, and the others
-        together, next to the interpolation between those."""
-        gaps = {}
-        for k, (nodes, index) in zip(wavenumbers, _intervals(self.segments, wavenumbers), strict=True):
-            gaps.setdefault((id(nodes[0]), index), (nodes, index, []))[2].append(k)
-        found, between = {}, {}
-        last = {segment: max(index for other, index in gaps if other == segment) for segment, _ in gaps}
-        for (segment, number), (nodes, index, inside) in gaps.items():
-            ends = [inside[0], inside[-1]] if number == last[segment] else [inside[0]]
-            chosen = inside if len(inside) <= _FEW else ends
-            finer, rest = between.setdefault(segment, ([], []))
-            for k in chosen:
-                found[k] = self._between(nodes, index, k, finer[-1] if finer else None)
-                finer += [found[k]] if not isinstance(found[k], ModeLost) else []
-            rest += [(k, nodes, index) for k in inside if k not in found]
-        for finer, rest in between.values():
-            found |= self._refined(finer, rest)
+        """Modes at many wavenumbers, next to the interpolation between the nodes of the walk; at a few, one by one."""
+        wavenumbers = sorted(wavenumbers)
+        places = list(zip(wavenumbers, intervals(self.segments, wavenumbers), strict=True))
+        found: dict[float, Any] = self._interpolating(places) if len(places) > _FEW else {}
+        last = None
+        for k, (nodes, index) in places:
+            mode = found[k] = found.get(k) or self._between(nodes, index, k, last)
+            last = last if isinstance(mode, ModeLost) else mode
         return found
 
-    def _refined(self, finer: "list[Mode]", rest: list[Any]) -> dict[Any, Any]:
-        """{k: mode} for each of the `rest` (k, nodes of the walk, index of the one before) next to the interpolation
-        between the modes `finer`; what does not settle there is refined alone."""
-        batches, found, last = {}, {}, finer[-1] if finer else None
-        places = _intervals([finer], [k for k, *_ in rest]) if len(finer) > 1 and rest else []
-        for (_, index), one in zip(places, rest, strict=False):
-            batches.setdefault(max(finer[index].degree, finer[index + 1].degree), {}).setdefault(index, []).append(one)
+    def _interpolating(self, places: list[Any]) -> "dict[float, Mode]":
+        """{k: mode} of what settles next to the interpolation, at `places` (k, (nodes of the walk, index of the one
+        before)), all that take the same degree together."""
+        if not self._rounding:
+            k, (nodes, index) = places[len(places) // 2]
+            mode = self._between(nodes, index, k)
+            self._rounding = 0.0 if isinstance(mode, ModeLost) else _SURE * mode.rounding / abs(mode.sigma)
+        gaps: dict[Any, Any] = {}
+        for k, (nodes, index) in places:
+            if len(nodes) > 1 and k != nodes[index].k:
+                gaps.setdefault((id(nodes), index), (nodes, index, []))[-1].append(k)
+        batches: dict[int, list[Any]] = {}
+        for nodes, index, inside in gaps.values():
+            degrees = self._degrees(nodes[index: index + 2], inside)
+            for degree in dict.fromkeys(degrees):
+                some = [k for k, own in zip(inside, degrees, strict=True) if own == degree]
+                batches.setdefault(degree, []).append((nodes, index, some))
+        found: dict[float, Mode] = {}
         for degree, batch in batches.items():
-            wavenumbers = [k for group in batch.values() for k, *_ in group]
-            guesses = [interpolated(self.solver, finer, index, np.log([k for k, *_ in group]), degree)
-                       for index, group in batch.items()]
-            rates, *vectors = (np.concatenate(parts) for parts in zip(*guesses, strict=True))
-            before = [finer[index] for index, group in batch.items() for _ in group]
-            modes = self.solver.solve_many(wavenumbers, rates, vectors, degree)
-            found |= {k: mode for k, mode, rate, near in zip(wavenumbers, modes, rates, before, strict=True)
-                      if mode and _near(mode, rate, near)}
-        return found | {k: self._between(nodes, index, k, last) for k, nodes, index in rest if k not in found}
+            found |= self._refined(degree, batch)
+        return found
+
+    def _degrees(self, ends: "list[Mode]", inside: list[float]) -> list[int]:
+        """The degrees to try between two nodes, as long as what either needs lets expect."""
+        needs = [node.degree + _RISE * (self.solver.needed(node, self._rounding) - node.degree) for node in ends]
+        needed = np.interp(np.log(inside), np.log([node.k for node in ends]), needs)
+        rungs = np.searchsorted(self.solver.degrees, np.maximum(needed, min(node.degree for node in ends)))
+        return np.array(self.solver.degrees)[np.minimum(rungs, len(self.solver.degrees) - 1)].tolist()
+
+    def _refined(self, degree: int, batch: list[Any]) -> "dict[float, Mode]":
+        """{k: mode} of what settles at this degree, or the one it takes, next to the interpolation; of gaps (nodes of
+        the walk, index of one, wavenumbers behind it) where that is the mode of the node before."""
+        guesses = [interpolated(self.solver, nodes, index, np.log(inside), degree) for nodes, index, inside in batch]
+        rates, *vectors = (np.concatenate(parts) for parts in zip(*guesses, strict=True))
+        wavenumbers = [k for *_, inside in batch for k in inside]
+        before = [nodes[index] for nodes, index, inside in batch for _ in inside]
+        least = min(node.degree for nodes, index, _ in batch for node in nodes[index: index + 2])
+        settled, found = self._settled(wavenumbers, rates, vectors, degree, before, least), {}
+        for nodes, index, inside in batch:
+            first = settled.get(inside[0])
+            if first and abs(self.solver.overlap(nodes[index], first) - 1) < _ASTRAY:
+                found |= {k: settled[k] for k in inside if k in settled}
+        return found
+
+    def _settled(self, wavenumbers: list[float], rates: np.ndarray, vectors: Any, degree: int, nodes: "list[Mode]",
+                 known: int) -> "dict[float, Mode]":
+        """{k: mode} of what settles near its guess, at this degree or the one it takes, with `nodes` before; the
+        vectors have coefficients up to the degree `known`."""
+        modes = self.solver.solve_many(wavenumbers, rates, vectors, degree, known)
+        near = [one for one in zip(wavenumbers, modes, nodes, rates, strict=True) if one[1] and _near(*one[1:])]
+        found, lacking = {}, {}
+        for k, mode, node, _ in near:
+            if self.solver.fits(mode) or degree == self.solver.degrees[-1]:
+                found[k] = mode
+            else:
+                lacking.setdefault(self.solver.likely_degree(mode), []).append((mode, node))
+        for higher, pairs in lacking.items():
+            again = [transfer(self.solver, (degree, mode.x, mode.y), higher) for mode, _ in pairs]
+            found |= self._settled([mode.k for mode, _ in pairs], np.array([mode.rate * _BESIDE for mode, _ in pairs]),
+                                   [np.array(rows) for rows in zip(*again, strict=True)], higher,
+                                   [node for _, node in pairs], degree)
+        return found
 
 
-def _near(mode: "Mode", rate: complex, node: "Mode") -> bool:
+def _near(mode: "Mode", node: "Mode", rate: complex) -> bool:
     """Whether a mode is where the interpolation of its rate from `node` and the next one expects it."""
     return abs(mode.rate - rate) < _DRIFT * (abs(rate) + abs(node.rate - rate))
 
@@ -298,49 +339,3 @@ def _glance(solver: Any, k: Any, limit: Any, exponent: Any, above: Any = None) -
 
 def _distance(mode: "Mode", limit: complex, exponent: complex) -> float:
     return max(abs(mode.sigma / limit - 1), abs(mode.k * mode.slope / mode.sigma - exponent))
-
-
-def _intervals(segments: "list[list[Mode]]", wavenumbers: list[float]) -> list[tuple[Any, ...]]:
-    """For each wavenumber the segment that contains it, or the one that ends nearest to it, and the node before it."""
-    logs, t = [np.log([node.k for node in nodes]) for nodes in segments], np.log(wavenumbers)
-    outside = np.array([np.maximum(np.maximum(ends.min() - t, t - ends.max()), 0) for ends in logs])
-    before = [np.clip(np.searchsorted(ends, t, side="right") - 1, 0, max(len(ends) - 2, 0)).tolist() for ends in logs]
-    nearest, gaps = outside.argmin(axis=0).tolist(), outside.min(axis=0).tolist()
-    places = []
-    for number, (which, far) in enumerate(zip(nearest, gaps, strict=True)):
-        nodes, ends = segments[which], logs[which]
-        if far:
-            places.append(([nodes[0 if abs(ends[0] - t[number]) < abs(ends[-1] - t[number]) else -1]], 0))
-        else:
-            places.append((nodes, before[which][number]))
-    return places
-
-
-def _hermite(nodes: "list[Mode]", index: int, t: Any) -> Any:
-    """The cubic through rates and slopes of a node and the next one at log k = t, a number or (points,)."""
-    here, there = nodes[index], nodes[index + 1]
-    h = log(there.k / here.k)
-    u = (t - log(here.k)) / h
-    rise = there.rate - here.rate
-    a, b = h * here.k * here.rate_slope - rise, rise - h * there.k * there.rate_slope
-    return here.rate + u * rise + u * (1 - u) * (a * (1 - u) + b * u)
-
-
-def interpolated(solver: "Solver", nodes: "list[Mode]", index: int, t: np.ndarray,
-                 degree: int) -> tuple[np.ndarray, ...]:
-    """Rates (cubic, values and slopes of two nodes) and vectors (cubic, four nodes) at log k = t (points,)."""
-    first = min(max(index - 1, 0), max(len(nodes) - 4, 0))
-    used = nodes[first: first + 4]
-    times = np.log([node.k for node in used])
-    ratios = (t - times[:, None]) / (times[:, None] - times + np.eye(len(used)))[..., None]
-    ratios[np.diag_indices(len(used))] = 1.0
-    weights = ratios.prod(axis=1)
-    vectors = [transfer(solver, (node.degree, node.x, node.y), degree) for node in used]
-    return _hermite(nodes, index, t), *(_blend(weights, rows, index - first) for rows in zip(*vectors, strict=True))
-
-
-def _blend(weights: np.ndarray, vectors: tuple[Any, ...], reference: int) -> np.ndarray:
-    """Weighted sums (points, size) of eigenvectors, each first given the scale of the one at `reference`."""
-    base = vectors[reference]
-    size = np.vdot(base, base)
-    return weights.T @ np.array([size / np.vdot(base, vector) * vector for vector in vectors])

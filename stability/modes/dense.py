@@ -15,6 +15,7 @@ from weakref import proxy
 import numpy as np
 from scipy.linalg import lapack
 
+from ..equations.condensed import sparing
 from ..equations.layer import FIELDS
 from ..errors import ModeLost
 
@@ -45,7 +46,11 @@ def unknowns(solver: "Solver", degree: int) -> int:
 def finite_rates(solver: "Solver", degree: int, symbols: dict[str, tuple[Any, ...]]) -> np.ndarray:
     """Return the finite eigenvalues of the pencil of this degree, all of them, by decreasing real part."""
     pencil, count = solver.pencil(degree), _finite_count(solver, degree)
-    theta, shift = _theta(pencil, pencil.weights(symbols).value, count)
+    weights = pencil.weights(symbols)
+    if sparing(pencil.layout) and (short := pencil.shortened):  # hardly more rows than `count` have the rate there
+        theta, shift = _theta(short, short.weights(weights.value))
+    else:
+        theta, shift = _theta(pencil, weights.value, count)
     rates = shift + 1 / theta[:count]
     rates = rates[np.isfinite(rates)]
     if not len(rates):

@@ -194,9 +194,8 @@ class Solver:
         while True:
             pencil = self.pencil(degree)
             x, y = transfer(self, vectors, degree) if vectors else (None, None)
-            leap = vectors and self.degrees.index(degree) > self.degrees.index(vectors[0]) + 1
-            accuracy = self.vectors * (_LEAP if leap else 1.0)
-            eigen = refine(pencil, self.weights(k), rate, x, y, self.bars, accuracy)
+            eigen = refine(pencil, self.weights(k), rate, x, y, self.bars,
+                           self._accuracy(vectors[0] if vectors else degree, degree))
             mode = self._mode(k, degree, eigen)
             if glance or degree == self.degrees[-1] or self.fits(mode):
                 return mode
@@ -227,35 +226,44 @@ class Solver:
         if self.fits(mode):
             return mode.degree
         rung = min(self.degrees.index(mode.degree) + 1, len(self.degrees) - 1)
+        return self.degrees[max(rung, int(np.searchsorted(self.degrees, self.needed(mode), side="right")) - 1)]
+
+    def needed(self, mode: Mode, rounding: float = 0.0) -> float:
+        """The degree, between rungs, at which the error of a mode is just small enough if its series fall on as they
+        do; `rounding` is what is known of that, relative to sigma: rougher solvers do not tell."""
+        excess = log(max(mode.truncation, _TINY) /
+                     max(mode.rounding, max(self.truncation, rounding) * abs(mode.sigma), _TINY))
         layout = self.pencil(mode.degree).layout
         shares = np.abs(mode.x[layout.ends]).sum(axis=2) * np.abs(mode.y[layout.last]).max(axis=1)  # of the truncation
         sizes = np.log(shares.sum(axis=1))
         fall, faster = sizes[1] - sizes[2], max(2 * sizes[1] - sizes[0] - sizes[2], 0.0) / 2  # half: falls are uneven
-        if fall > 0:  # from here on by fall + faster, fall + 2 faster ...
-            excess = log(mode.truncation / max(mode.rounding, self.truncation * abs(mode.sigma), _TINY))
-            fall += faster / 2
-            steps = 2 * excess / (fall + (fall**2 + 2 * faster * excess) ** 0.5)
-            enough = min(2 * mode.degree, mode.degree + layout.structure.stride * layout.ends.shape[2] * steps)
-            rung = max(rung, int(np.searchsorted(self.degrees, enough, side="right")) - 1)
-        return self.degrees[rung]
+        if fall <= 0:
+            return mode.degree + float(excess > 0)
+        fall += faster / 2  # from here on by fall + faster, fall + 2 faster ...
+        steps = 2 * excess / (fall + max(fall**2 + 2 * faster * excess, 0.0) ** 0.5)
+        return min(2.0 * mode.degree, mode.degree + layout.structure.stride * layout.ends.shape[2] * steps)
+
+    def _accuracy(self, known: int, degree: int) -> float:
+        """Of vectors, where coefficients up to the degree `known` are the guess."""
+        return self.vectors * (_LEAP if self.degrees.index(degree) > self.degrees.index(known) + 1 else 1.0)
 
     def solve_many(self, wavenumbers: list[float], rates: np.ndarray | None, vectors: list[np.ndarray],
-                   degree: int) -> list[Any]:
-        """Return the modes at many wavenumbers at once, None where more work is needed.
+                   degree: int, known: int | None = None) -> list[Any]:
+        """Return the modes at many wavenumbers at once, at this degree, None where the iteration does not settle.
 
         `rates` (points,) and right and left `vectors` (points, size) of this degree are good guesses. Without rates
-        the quotients of the vectors are.
+        the quotients of the vectors are. Coefficients beyond the degree `known` are none, if that is given.
         """
-        modes, (x, y) = [], vectors
-        count = max(1, min(_TOGETHER[0], _TOGETHER[1] // self.pencil(degree).layout.places.count))
+        modes, (x, y), pencil = [], vectors, self.pencil(degree)
+        entries = (pencil.iterated(len(wavenumbers)) or pencil).entries
+        count = max(1, min(_TOGETHER[0], _TOGETHER[1] // entries))
         for first in range(0, len(wavenumbers), count):
             part = slice(first, first + count)
-            eigen = refine_many(self.pencil(degree), self.weights(wavenumbers[part]),
+            eigen = refine_many(pencil, self.weights(wavenumbers[part]),
                                 None if rates is None else rates[part],
-                                x[part], y[part], self.bars, self.vectors)
+                                x[part], y[part], self.bars, self._accuracy(known or degree, degree))
             found = [self._mode(k, degree, one) for k, one in zip(wavenumbers[part], eigen.split(), strict=True)]
-            modes += [mode if settled and self.fits(mode) else None
-                      for mode, settled in zip(found, eigen.settled, strict=True)]
+            modes += [mode if settled else None for mode, settled in zip(found, eigen.settled, strict=True)]
         return modes
 
     def fits(self, mode: Mode) -> bool:

@@ -17,9 +17,8 @@ def winding(solver: Any, degree: Any, k: Any, known: Any, line: Any) -> Any:
     """How often the determinant over (rate - known) turns around the rates above the line."""
     pencil = solver.pencil(degree)
     weights = pencil.weights(solver.symbols(k))
-    inner, own = pencil, weights.value
-    if pencil.condensed:
-        inner, own = pencil.condensed, pencil.condensed.weights(own)
+    condensed = pencil.condensed_for(sum(_SIDE))
+    inner, own = (condensed, condensed.weights(weights.value)) if condensed else (pencil, weights.value)
     banded = _turns(lambda rates: _banded_phases(inner, own, np.array(rates)), known, line, 0)
     if banded is not None and abs(banded) < _FLAT:
         return 0
@@ -29,7 +28,7 @@ def winding(solver: Any, degree: Any, k: Any, known: Any, line: Any) -> Any:
 
 def _banded_phases(pencil: Any, weights: np.ndarray, rates: np.ndarray) -> np.ndarray:
     """The determinants at these rates over their moduli, from band factors; but for a sign where it is condensed."""
-    factors = pencil.factors(np.repeat(weights[:, None], len(rates), axis=1), rates)
+    factors = pencil.factors(weights, rates)
     return np.where(factors.uneven, [pencil.factors(weights, rate).phase() if uneven else 0 for rate, uneven in
                                      zip(rates.tolist(), factors.uneven, strict=True)], factors.phases())
 

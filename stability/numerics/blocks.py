@@ -26,6 +26,13 @@ def placed(part: np.ndarray, row: np.ndarray, column: np.ndarray, parts: int, in
     return Blocks(part, row, column, parts, interior, border) if full else band
 
 
+def whole(part: np.ndarray, row: np.ndarray, column: np.ndarray, parts: int, interior: int, border: int) -> Places:
+    """The `placed` entries, but where all would be one block and the border: one block without a border."""
+    places = placed(part, row, column, parts, interior, border)
+    alone = isinstance(places, Blocks) and places.lone
+    return Blocks(part, row, column, parts, interior + border, 0) if alone else places
+
+
 def _edges(row: np.ndarray, column: np.ndarray, interior: int) -> np.ndarray:
     """Where the blocks of the interior begin, and its end."""
     inside = (row < interior) & (column < interior)
@@ -37,7 +44,7 @@ def _edges(row: np.ndarray, column: np.ndarray, interior: int) -> np.ndarray:
 class Blocks(Places):
     """Where the entries lie in a matrix with full blocks along its diagonal and a border.
 
-    The blocks follow one another, each by columns; all else is as in a band.
+    The blocks follow one another, each by columns; all else is as in a band. `lone` tells whether there is but one.
     """
 
     def _inner(self, row: np.ndarray, column: np.ndarray, inside: np.ndarray) -> tuple[tuple[int, int], np.ndarray]:
@@ -52,6 +59,7 @@ class Blocks(Places):
             used = column[beside & (row >= first) & (row < last)] - self.interior
             few = slice(int(used.min(initial=self.border)), int(used.max(initial=-1)) + 1)
             self._parts.append((slice(first, last), slice(end - (last - first) ** 2, end), few))
+        self.lone = len(sizes) == 1
         place = (ends - sizes**2)[block] + (column - edges[block]) * sizes[block] + row - edges[block]
         return (1, int(ends[-1])), place
 
@@ -78,6 +86,8 @@ class BlockFactors:
         """Return z with M z = right, or M^T z = right."""
         if right.ndim > 1 and right.shape[1] >= _WIDE_RIGHT:
             return self._apart(right, trans)
+        if len(self._factors) == 1:
+            return self._solve(*self._factors[0], right, trans=trans)[0]
         return np.concatenate([self._solve(*factors, right[rows], trans=trans)[0]
                                for factors, (rows, *_) in zip(self._factors, self._parts, strict=True)])
 

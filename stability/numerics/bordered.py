@@ -6,7 +6,6 @@
 The interior is factorised as a band (LAPACK gbtrf); the border follows by block elimination.
 """
 
-from collections.abc import Iterable
 from contextlib import suppress
 from functools import cached_property
 from typing import Any
@@ -17,9 +16,9 @@ from scipy.sparse import csr_array
 
 from .stack import with_data
 
+_CHUNK = 1 << 15  # numbers that are brought from columns to rows at once
 UNEVEN = 1e6  # largest entry of a sum above which its rows and columns are scaled
 
-_MANY = 4000  # entries of a sum from which on each point is summed by itself
 _FULL = {"f": (lapack.dgetrf, lapack.dgetri), "c": (lapack.zgetrf, lapack.zgetri)}
 _BAND = {"f": (lapack.dgbtrf, lapack.dgbtrs), "c": (lapack.zgbtrf, lapack.zgbtrs)}
 
@@ -28,7 +27,8 @@ class Places:
     """Where the entries part, row, column (entries,) of `parts` sparse matrices lie in a bordered band matrix.
 
     The band is stored by columns as LAPACK's gbtrf wants it: entry (row, column) at [column, lower + upper + row -
-    column], the first `lower` places being room for fill; behind it `right` and then `bottom` with the corner.
+    column], the first `lower` places being room for fill; behind it `right` and then `bottom` with the corner. Of these
+    `count` places those `used` have an entry, at `row` and `column`.
     """
 
     def __init__(self, part: np.ndarray, row: np.ndarray, column: np.ndarray, parts: int, interior: int,
@@ -44,10 +44,10 @@ class Places:
         self._order = np.argsort(place, kind="stable").astype(np.int32)
         place = place[self._order]
         first = np.flatnonzero(np.diff(place, prepend=-1))
-        self._place = place[first]
+        self.used = place[first]
         self.row, self.column = (index[self._order][first].astype(np.int32) for index in (row, column))
-        self._matrix = csr_array((np.zeros(len(place)), part[self._order], np.append(first, len(place))),
-                                 (len(first), parts))
+        ends = np.searchsorted(place, np.arange(self._starts[-1] + 1))
+        self._matrix = csr_array((np.zeros(len(place)), part[self._order], ends), (self._starts[-1], parts))
 
     def _inner(self, row: np.ndarray, column: np.ndarray, inside: np.ndarray) -> tuple[tuple[int, int], np.ndarray]:
         """The shape of the array of the interior, and where entries lie in it."""
@@ -61,27 +61,12 @@ class Places:
         return BandFactors(band, self.lower, self.upper)
 
     def matrix(self, value: np.ndarray) -> Any:
-        """The sparse matrix (places, parts) of entries with these values (entries,)."""
+        """The sparse matrix (count, parts) of entries with these values (entries,)."""
         return with_data(self._matrix, value[self._order])
 
     def blocks(self, values: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Return band, right and bottom with these values (..., places) in place."""
-        flat = np.zeros((*values.shape[:-1], self._starts[3]), values.dtype)
-        flat[..., self._place] = values
-        return self._split(flat)
-
-    def filled(self, each: Iterable[np.ndarray], count: int, kind: Any) -> tuple[tuple[np.ndarray, ...], np.ndarray]:
-        """The same for the values (places,) of `count` points, and the largest real or imaginary parts (points,)."""
-        flat, largest = np.zeros((count, self._starts[3]), kind), np.empty(count)
-        for point, values in enumerate(each):
-            flat[point, self._place] = values
-            numbers = values.view(float)
-            largest[point] = max(numbers.max(initial=0), -numbers.min(initial=0))
-        return self._split(flat), largest
-
-    def _split(self, flat: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Band, right and bottom in arrays (..., count)."""
-        return tuple(flat[..., start: stop].reshape(*flat.shape[:-1], *shape) for start, stop, shape in
+        """Return band, right and bottom, of all the values (..., count)."""
+        return tuple(values[..., start: stop].reshape(*values.shape[:-1], *shape) for start, stop, shape in
                      zip(self._starts[:-1], self._starts[1:], self._shapes, strict=True))
 
 
@@ -121,18 +106,32 @@ class Bordered:
         """
         values, scales = self._matrix @ weights, None
         if np.abs(values.view(float)).max(initial=0) > UNEVEN:
-            scales = self._scales(np.abs(values))
-            values *= scales[0][self.places.row] * scales[1][self.places.column]
+            used = self.places.used
+            scales = self._scales(np.abs(values[used]))
+            values[used] *= scales[0][self.places.row] * scales[1][self.places.column]
         return self.places.blocks(values), scales
 
     def sums(self, weights: Any) -> Any:
         """Return the blocks of the sums at many points, weights (parts, points), unscaled, and which are uneven."""
-        if self._matrix.nnz < _MANY:
-            values = np.ascontiguousarray((self._matrix @ weights).T)
-            return self.places.blocks(values), np.abs(values.view(float)).max(axis=1) > UNEVEN
-        each = (self._matrix @ one for one in np.ascontiguousarray(weights.T))  # what is summed stays in the cache
-        sums, largest = self.places.filled(each, weights.shape[1], np.result_type(self._matrix.dtype, weights))
-        return sums, largest > UNEVEN
+        values = np.empty(weights.shape[1:] + self._matrix.shape[:1], np.result_type(self._matrix.dtype, weights))
+        few = max(1, _CHUNK // len(values.T))
+        for first in range(0, len(values), few):
+            values[first: first + few] = (self._matrix @ weights[:, first: first + few]).T
+        return self.places.blocks(values), _uneven(values, self._largest @ np.abs(weights))
+
+    def along(self, weights: Any, rates: Any) -> Any:
+        """The `sums` for weights[:, 0] + rate weights[:, 1] at many rates."""
+        start, slope = (self._matrix @ weights).T
+        values = np.multiply.outer(rates, slope)
+        values += start
+        return self.places.blocks(values), _uneven(values, np.abs(start).max() + np.abs(rates) * np.abs(slope).max())
+
+    @cached_property
+    def _largest(self) -> np.ndarray:
+        """The largest modulus in each part (parts,)."""
+        largest = np.zeros(self._matrix.shape[1])
+        np.maximum.at(largest, self._matrix.indices, np.abs(self._matrix.data))
+        return largest
 
     def _scales(self, size: np.ndarray) -> np.ndarray:
         """Powers of two for rows and columns, (2, size), by the sizes of the entries."""
@@ -145,6 +144,13 @@ class Bordered:
             scales[axis] *= factor
             size = size * factor[index]
         return scales
+
+
+def _uneven(values: np.ndarray, bounds: np.ndarray) -> np.ndarray:
+    """Whether values (points, count) are very large; where `bounds` (points,) of them are not, they need no look."""
+    uneven = bounds > UNEVEN
+    uneven[uneven] = np.abs(values[uneven].view(float)).max(axis=1) > UNEVEN
+    return uneven
 
 
 def _inverse(matrix: np.ndarray) -> np.ndarray:
@@ -173,7 +179,7 @@ class Factors:
         self._bottom = bottom[:, : self._interior]
         self._coupled = self._inner.coupled(right)
         self._schur = bottom[:, self._interior:] - self._bottom @ self._coupled
-        self._border = _inverse(self._schur)
+        self._border = _inverse(self._schur) if len(self._schur) else self._schur
 
     def phase(self) -> Any:
         """Return the determinant over its modulus (scales are positive: they leave it alone)."""
@@ -214,11 +220,12 @@ def phase(diagonal: Any, pivots: Any) -> Any:
 class ManyFactors:
     """The `Factors` at many points, weights (parts, points); right-hand sides are the columns of arrays (size, points).
 
-    `uneven` tells which points need scales, and have none here. What is singular gives numbers that are not finite.
+    Weights (parts, 2) and many rates give those for weights[:, 0] + rate weights[:, 1]. `uneven` tells which points
+    need scales, and have none here. What is singular gives numbers that are not finite.
     """
 
-    def __init__(self, bordered: "Bordered", weights: np.ndarray) -> None:
-        (band, right, bottom), self.uneven = bordered.sums(weights)
+    def __init__(self, bordered: "Bordered", weights: np.ndarray, rates: np.ndarray | None = None) -> None:
+        (band, right, bottom), self.uneven = bordered.sums(weights) if rates is None else bordered.along(weights, rates)
         places = bordered.places
         self._interior, self._inner = places.interior, [places.factors(one) for one in band]
         self._bottom = bottom[..., : self._interior]
@@ -241,17 +248,21 @@ class ManyFactors:
 
     def solve(self, f: Any) -> Any:
         """Return z with M z = f at every point."""
-        f = f.T
-        inner = self._solved(f[:, : self._interior])[..., None]
-        border = self._border @ (f[:, self._interior:, None] - self._bottom @ inner)
-        return np.concatenate([inner - self._coupled @ border, border], axis=1)[..., 0].T
+        inner = self._solved(f[: self._interior].T)
+        if not self._bottom.shape[1]:
+            return inner.T
+        border = self._border @ (f[self._interior:].T[..., None] - self._bottom @ inner[..., None])
+        return np.concatenate([inner - (self._coupled @ border)[..., 0], border[..., 0]], axis=1).T
 
     def solve_left(self, g: np.ndarray) -> np.ndarray:
         """Return z with z^T M = g^T (no conjugation) at every point."""
+        if not self._bottom.shape[1]:
+            return self._solved(g.T, trans=1).T
         inner, border = g.T[:, None, : self._interior], g.T[:, None, self._interior:]
         border = (border - inner @ self._coupled) @ self._border
         inner = self._solved((inner - border @ self._bottom)[:, 0], trans=1)
         return np.concatenate([inner, border[:, 0]], axis=1).T
 
     def _solved(self, right: np.ndarray, trans: int = 0) -> np.ndarray:
+        right = np.ascontiguousarray(right)  # once for all: LAPACK wants vectors so
         return np.array([inner.solve(one, trans) for inner, one in zip(self._inner, right, strict=True)])

@@ -12,9 +12,8 @@ At many wavenumbers each has its own factorisation and all else is done together
 (size, points) then, and plain (size,) at one.
 """
 
-from dataclasses import dataclass, fields, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -36,8 +35,7 @@ _sum = np.add.reduce  # over the parts
 _OFFSET = 1e-3  # of a factorisation for corrections from its rate: it must not be singular
 
 
-@dataclass(frozen=True, slots=True)
-class Eigen:
+class Eigen(NamedTuple):
     """Eigenvalues of a pencil at several points, arrays (points,) and vectors (points, size), or at a single one.
 
     `rate` with its `slope` in k, `scatter` being what the last step of the vectors did to that and `left` what steps to
@@ -57,11 +55,14 @@ class Eigen:
     y: np.ndarray
     settled: np.ndarray
 
+    def widened(self, by: Any) -> "Eigen":
+        """Return the same with a larger spread."""
+        return self._replace(spread=self.spread + by)
+
     def split(self) -> "list[Eigen]":
         """Return the eigenvalues of the points, each on its own."""
-        columns = {field.name: getattr(self, field.name) for field in fields(self)}
-        columns |= {name: columns[name].tolist() for name in ("truncation", "rounding", "spread", "settled")}  # cheaper
-        return [Eigen(*values) for values in zip(*columns.values(), strict=True)]
+        columns = [values.tolist() if values.ndim == 1 else values for values in self]  # plain numbers are cheaper
+        return [Eigen(*values) for values in zip(*columns, strict=True)]
 
 
 def refine(pencil: Any, weights: Any, rate: complex, x: np.ndarray | None = None, y: np.ndarray | None = None,
@@ -98,7 +99,7 @@ def refine_many(pencil: Any, weights: Any, rate: np.ndarray | None, x: np.ndarra
     Without `bars` the rounding is left at 0: a rough look does not need it. Without a rate the quotient of the vectors
     is the guess.
     """
-    inner, own, x, y = _inside(pencil.condensed, pencil, weights, x.T, y.conj().T)
+    inner, own, x, y = _inside(pencil.iterated(len(x)), pencil, weights, x.T, y.conj().T)
     arithmetic = inner.arithmetic
     if rate is None:
         rate = _rate(inner, own * arithmetic.brackets(x, y))
@@ -156,7 +157,7 @@ def _twice(pencil: Any, weights: Any, found: "Eigen", bars: bool) -> "Eigen":
     other modes are too near, it stays as it was found.
     """
     again = _corrected(pencil, weights, found, bars)
-    return replace(again, spread=again.spread + abs(again.rate - found.rate)) if again.settled else found
+    return again.widened(abs(again.rate - found.rate)) if again.settled else found
 
 
 def _corrected(pencil: Any, weights: Any, found: "Eigen", bars: bool) -> "Eigen":

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stability.numerics.blocks import Blocks, placed
+from stability.numerics.blocks import Blocks, placed, whole
 from stability.numerics.bordered import Bordered, Factors, ManyFactors, Places
 
 SIZES, BORDER, PARTS = (5, 9, 7), 4, 2
@@ -73,3 +73,40 @@ def test_a_singular_block_is_refused(matrices):
     bordered = Bordered(placed(*places, PARTS, INTERIOR, BORDER), value * (places[1] != 6))
     with pytest.raises(np.linalg.LinAlgError, match="singular interior"):
         Factors(bordered, np.array([1.0, -0.5]))
+
+
+def test_one_block_takes_its_border_in(matrices):
+    """What is full but for its border is one full block; several blocks keep theirs."""
+    full, places, value = matrices
+    assert whole(*places, PARTS, INTERIOR, BORDER).border == BORDER
+    inside = (places[1] < SIZES[0]) & (places[2] < SIZES[0])
+    inside |= (places[1] >= INTERIOR) & ((places[2] < SIZES[0]) | (places[2] >= INTERIOR))
+    inside |= (places[1] < SIZES[0]) & (places[2] >= INTERIOR)
+    shift = INTERIOR - SIZES[0]
+    part, row, column = (index[inside] for index in places)
+    row, column = (np.where(index < SIZES[0], index, index - shift) for index in (row, column))
+    bordered = Bordered(whole(part, row, column, PARTS, SIZES[0], BORDER), value[inside])
+    assert (bordered.places.interior, bordered.places.border) == (SIZES[0] + BORDER, 0)
+    kept = np.r_[: SIZES[0], INTERIOR: SIZE]
+    weights, x = np.array([[1.0, 0.5], [-0.5, 0.1]]), columns(2, np.isrealobj(full))[kept]
+    many = ManyFactors(bordered, weights)
+    for index in range(2):
+        matrix = np.tensordot(weights[:, index], full, 1)[np.ix_(kept, kept)]
+        np.testing.assert_allclose(many.solve(matrix @ x)[:, index], x[:, index], atol=1e-11)
+        np.testing.assert_allclose(many.solve_left(matrix.T @ x)[:, index], x[:, index], atol=1e-11)
+        np.testing.assert_allclose(Factors(bordered, weights[:, index]).solve(matrix @ x), x, atol=1e-11)
+        np.testing.assert_allclose(many.phases()[index], np.linalg.slogdet(matrix)[0], atol=1e-12)
+
+
+@pytest.mark.parametrize("kind", [Places, placed])
+def test_many_rates_on_a_line(matrices, kind):
+    """Weights that are linear in a rate: the same factors, and the same ones are uneven."""
+    full, places, value = matrices
+    bordered = Bordered(kind(*places, PARTS, INTERIOR, BORDER), value)
+    weights, rates = np.array([[1.0, 0.0], [0.2, -0.5]]), np.array([0.5, 2.0, 1e9])
+    line = ManyFactors(bordered, weights, rates)
+    each = ManyFactors(bordered, weights[:, :1] + weights[:, 1:] * rates)
+    assert line.uneven.tolist() == each.uneven.tolist() == [False, False, True]
+    np.testing.assert_allclose(line.phases(), each.phases(), atol=1e-12)
+    f = columns(3, np.isrealobj(full))
+    np.testing.assert_allclose(line.solve(f)[:, :2], each.solve(f)[:, :2], atol=1e-12)

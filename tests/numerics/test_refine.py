@@ -1,7 +1,5 @@
 """Inverse iteration: what is told of matrices whose factors lose digits."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -25,7 +23,7 @@ def test_what_two_ways_of_solving_uneven_matrices_differ_by_joins_the_error(monk
         return solver.solve(k, mode.rate, (mode.degree, mode.x, mode.y), mode.degree).error
 
     def shifted(found, part):
-        return replace(found, rate=found.rate * (1 + part))
+        return found._replace(rate=found.rate * (1 + part))
 
     assert error(0.0) < 1e-7 * abs(mode.sigma)
     assert error(1e-5) >= 1e-5 * abs(mode.sigma) * (1 - 1e-3)
