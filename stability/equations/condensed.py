@@ -16,7 +16,6 @@ series are; what it takes to form S then pays at many wavenumbers.
 """
 
 from collections.abc import Iterator
-from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -30,11 +29,10 @@ from .combination import Combination
 from .layer import FIELDS
 
 if TYPE_CHECKING:
-    from .pencil import Layout, Weights
+    from .pencil import Layout
 
 _GIVEN = tuple(FIELDS.index(name) for name in ("w", "n"))  # in this order: the equation of the second has the first
 _PIVOT = 2.0  # d phi_j / ds = 2 T_{j-1}
-_SWEEPS = len(_GIVEN)  # after which P is inverted
 
 Key = tuple[int, int, tuple[int, ...]]  # a group of rows, one of columns, and the parts whose product is the weight
 
@@ -105,8 +103,8 @@ class Arrangement:
     """What the condensed pencils of one layout have in common: where entries lie before.
 
     `kept_rows`, `kept_columns` (kept,) and `given_rows`, `given_columns` (given,) are the places of R and E in vectors;
-    `rows` and `columns` tell where the entries in the rows, and in the columns, of E lie: those are `in_rows` and
-    `in_columns` of the entries of the layout.
+    `rows`, `columns` and `both` tell where the entries in the rows, in the columns, and of N lie: those are `in_rows`,
+    `in_columns` and `in_both` of the entries of the layout.
     """
 
     def __init__(self, layout: "Layout") -> None:
@@ -122,9 +120,14 @@ class Arrangement:
         where[self.given_rows] = np.arange(len(self.given_rows))
         self.rows = Lines(part[self.in_rows], where[row[self.in_rows]], column[self.in_rows], count,
                           (len(self.given_rows), layout.size))
+        given = groups.given[groups.row[row]] & groups.given[groups.column[column]]
+        self.in_both = np.flatnonzero(given & (groups.row[row] != groups.column[column]))
+        at_row = where[row[self.in_both]]
         where[self.given_columns] = np.arange(len(self.given_columns))
         self.columns = Lines(part[self.in_columns], row[self.in_columns], where[column[self.in_columns]], count,
                              (layout.size, len(self.given_columns)))
+        self.both = Lines(part[self.in_both], at_row, where[column[self.in_both]], count,
+                          (len(self.given_rows), len(self.given_columns)))
         self._place(part, row, column)
 
     def _place(self, part: np.ndarray, row: np.ndarray, column: np.ndarray) -> None:
@@ -168,7 +171,7 @@ class Reduced:
                  for *_, product in keys}
         parts = sorted(set(names.values()), key=lambda names: ("rate" in names, names))
         self.first_b = sum("rate" not in one for one in parts)
-        self.carriers, self.sides = np.arange(len(parts)) >= self.first_b, np.array((0, self.first_b))
+        self.carriers = np.arange(len(parts)) >= self.first_b
         products = [next(product for product, name in names.items() if name == one) for one in parts]
         most = max(map(len, products))
         self.factors = np.array([[*one, *[len(structure.parts)] * (most - len(one))] for one in products])
@@ -192,30 +195,27 @@ class Condensed(Combination):
     """The condensed form S of a pencil whose entries in the layout have these values.
 
     It has the `stack`, `powers`, `factors`, `b_products` and `arithmetic` of a pencil, for weights of its own parts;
-    `sides` are the first without and the first with the rate, which is in `rate_rows` of the `size`.
+    the rate is in `rate_rows` of the `size`.
     """
 
     def __init__(self, arrangement: Arrangement, value: np.ndarray) -> None:
         self._arrangement = arrangement
         blocks = _condensed(arrangement, value)
         self._where = arrangement.reduced
-        self.first_b, self.sides = self._where.first_b, self._where.sides
-        self.size, self.rate_rows = self._where.size, self._where.rate_rows
+        self.first_b, self.size, self.rate_rows = self._where.first_b, self._where.size, self._where.rate_rows
         self._value = np.concatenate([block.ravel() for block in blocks.values()])[self._where.entries]
         self._carried = self._value[self._where.carrying]
         self._rows = Stack(arrangement.rows, value[arrangement.in_rows])
         self._columns = Stack(arrangement.columns, value[arrangement.in_columns])
+        self._both = Stack(arrangement.both, value[arrangement.in_both])
 
     @property
     def arithmetic(self) -> Arithmetic:
         return Arithmetic(self)  # nothing is kept: what refers to itself would outlive its use
 
-    def weights(self, weights: "Weights") -> "Weights":
-        """The `Weights` of its parts for those of the parts of the pencil, without their spread."""
-        factors, one = self._where.factors, np.ones((1, *weights.value.shape[1:]))
-        value = np.concatenate((weights.value, one))[factors].prod(axis=1)
-        slopes = np.concatenate((weights.slope / weights.value, 0 * one))[factors].sum(axis=1)
-        return replace(weights, value=value, slope=value * slopes, spread=0 * value)
+    def weights(self, value: np.ndarray) -> np.ndarray:
+        """The weights of its parts, (parts, ...), for those of the parts of the pencil."""
+        return np.concatenate((value, np.ones((1, *value.shape[1:]))))[self._where.factors].prod(axis=1)
 
     def restricted(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The parts R of vectors x and y (without conjugation)."""
@@ -223,13 +223,14 @@ class Condensed(Combination):
 
     def continued(self, weights: np.ndarray, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Vectors of the pencil from x_R and y_R, for the weights of its parts times powers of the rate."""
-        arrangement, rows, columns = self._arrangement, self._rows, self._columns
+        arrangement, rows, columns, both = self._arrangement, self._rows, self._columns, self._both
         full_x, full_y = (np.zeros((arrangement.size, *x.shape[1:]), vector.dtype) for vector in (x, y))
         full_x[arrangement.kept_columns], full_y[arrangement.kept_rows] = x, y
-        in_rows, in_columns = rows.spread(weights), columns.spread(weights)
-        for _ in range(_SWEEPS):
-            full_x[arrangement.given_columns] -= rows.total(in_rows, rows.times(full_x)) / _PIVOT
-            full_y[arrangement.given_rows] -= columns.total_left(in_columns, full_y) / _PIVOT
+        given_x = rows.total(rows.spread(weights), rows.times(full_x)) / -_PIVOT
+        given_y = columns.total_left(columns.spread(weights), full_y) / -_PIVOT
+        in_both = both.spread(weights)
+        full_x[arrangement.given_columns] = given_x - both.total(in_both, both.times(given_x)) / _PIVOT
+        full_y[arrangement.given_rows] = given_y - both.total_left(in_both, given_y) / _PIVOT
         return full_x, full_y
 
 

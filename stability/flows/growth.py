@@ -6,8 +6,8 @@ Without inertia a perturbation exp(i k (x + m z)) obeys, from the equations of `
 
 The slower the grains the smaller is r, and two of the roots are near m = a/r: the shorter waves. A series has nearly as
 many terms as that of the velocity, and more by two thirds of the radians by which such waves turn (measured). Where
-inertia matters others turn by (k rho U/beta)^(1/2) times the height, with the rise of U across the layer: those are
-longer as k grows, so that they only keep a layer from being taken for one with few waves.
+inertia matters others turn by (k rho U/beta)^(1/2) times the height, with the rise of U across the layer: as k grows
+slow ones overtake those, which only keep a layer from being taken for one with few waves.
 """
 
 from functools import lru_cache

@@ -48,7 +48,7 @@ def finite_rates(solver: "Solver", degree: int, symbols: dict[str, tuple[Any, ..
     pencil, count = solver.pencil(degree), _finite_count(solver, degree)
     weights = pencil.weights(symbols)
     if sparing(pencil.layout) and (short := pencil.shortened):  # hardly more rows than `count` have the rate there
-        theta, shift = _theta(short, short.weights(weights).value)
+        theta, shift = _theta(short, short.weights(weights.value))
     else:
         theta, shift = _theta(pencil, weights.value, count)
     rates = shift + 1 / theta[:count]

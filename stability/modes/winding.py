@@ -18,8 +18,8 @@ def winding(solver: Any, degree: Any, k: Any, known: Any, line: Any) -> Any:
     pencil = solver.pencil(degree)
     weights = pencil.weights(solver.symbols(k))
     condensed = pencil.condensed_for(sum(_SIDE))
-    inner, own = (condensed, condensed.weights(weights)) if condensed else (pencil, weights)
-    banded = _turns(lambda rates: _banded_phases(inner, own.value, np.array(rates)), known, line, 0)
+    inner, own = (condensed, condensed.weights(weights.value)) if condensed else (pencil, weights.value)
+    banded = _turns(lambda rates: _banded_phases(inner, own, np.array(rates)), known, line, 0)
     if banded is not None and abs(banded) < _FLAT:
         return 0
     a, b = pencil.pair(weights)

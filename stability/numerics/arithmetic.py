@@ -23,13 +23,16 @@ class Iterated:
     """Right and left `vectors` after two inverse iterations, and their last `steps`.
 
     `sizes` (3, 2, ...) are those of the first step, the last step and the vector of either. Vectors are scaled
-    by one component. `uneven` tells where the matrix needs scales: at many points nothing holds there.
+    by one component. `uneven` tells where the matrix needs scales: at many points nothing holds there. The eigenvalue
+    less the rate is the inverse of `ahead`, by which the last iteration has made that component larger; None where
+    nobody asks for it.
     """
 
     vectors: tuple[np.ndarray, ...]
     steps: tuple[np.ndarray, ...]
     sizes: np.ndarray
     uneven: Any
+    ahead: Any = None
 
 
 class Arithmetic:
@@ -45,9 +48,9 @@ class Arithmetic:
         """
         factors = self._pencil.factors(weights, rate) if np.ndim(rate) else self.factors(weights, rate)
         right, left = self._pencil.b_products(weights)
-        x, dx, x_sizes = _iterated(right, factors.solve, x)
-        y, dy, y_sizes = _iterated(left, factors.solve_left, y)
-        return Iterated((x, y), (dx, dy), np.array((x_sizes, y_sizes)).swapaxes(0, 1), factors.uneven)
+        x, dx, x_sizes, ahead = _iterated(right, factors.solve, x)
+        y, dy, y_sizes, _ = _iterated(left, factors.solve_left, y)
+        return Iterated((x, y), (dx, dy), np.array((x_sizes, y_sizes)).swapaxes(0, 1), factors.uneven, ahead)
 
     def factors(self, weights: np.ndarray, rate: Any) -> Any:
         """LU factors of A - rate B at one point, next to the rate where that is an eigenvalue to the last bit."""
@@ -80,16 +83,18 @@ class Arithmetic:
 
 
 def _iterated(b: Callable[..., Any], solve: Callable[..., Any], vector: np.ndarray) -> tuple[Any, ...]:
-    """Two inverse iterations from one side; the vector, its last step, and the sizes of both steps and of it."""
+    """Two inverse iterations from one side; the vector, its last step, the sizes of both steps and of it, and by how
+    much the last iteration has made its largest component larger."""
     pivot = np.abs(vector).argmax(axis=0)
     if vector.ndim > 1:
         pivot = pivot, np.arange(vector.shape[1])
     first = solve(b(vector))
     start, first = vector * (1 / vector[pivot]), first * (1 / first[pivot])
     second = solve(b(first))
-    second = second * (1 / second[pivot])
+    ahead = second[pivot]
+    second = second * (1 / ahead)
     last = second - first
-    return second, last, (size_of(first - start), size_of(last), size_of(second))
+    return second, last, (size_of(first - start), size_of(last), size_of(second)), ahead
 
 
 def size_of(vectors: np.ndarray) -> Any:

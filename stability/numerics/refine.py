@@ -79,13 +79,14 @@ def refine(pencil: Any, weights: Any, rate: complex, x: np.ndarray | None = None
     for _ in range(_FACTORISATIONS):
         if pencil.real and not np.imag(rate):
             rate, x, y = np.real(rate), x.real, y.real
-        last = arithmetic.iterate(own.value, rate, x, y)
+        last = arithmetic.iterate(own, rate, x, y)
         x, y = last.vectors
         shares, settled = _judged(last, accuracy)
         if settled:
-            found = _quotient(pencil, weights, x, y, last.steps, shares, settled, bars, (inner, own))
+            inside = None if inner is pencil else (inner, rate + 1 / last.ahead)
+            found = _quotient(pencil, weights, x, y, last.steps, shares, settled, bars, inside)
             return _twice(pencil, weights, found, bars) if last.uneven else found
-        rate = _rate(inner, own.value * arithmetic.brackets(x, y))
+        rate = _rate(inner, own * arithmetic.brackets(x, y))
         if not np.isfinite(rate):
             break
     raise ModeLost(f"inverse iteration near rate {complex(rate):.6g} did not settle")
@@ -101,23 +102,26 @@ def refine_many(pencil: Any, weights: Any, rate: np.ndarray | None, x: np.ndarra
     inner, own, x, y = _inside(pencil.iterated(len(x)), pencil, weights, x.T, y.conj().T)
     arithmetic = inner.arithmetic
     if rate is None:
-        rate = _rate(inner, own.value * arithmetic.brackets(x, y))
+        rate = _rate(inner, own * arithmetic.brackets(x, y))
     if pencil.real and not np.any(np.imag(rate)):
         rate, x, y = rate.real, x.real, y.real
     x, y = (np.ascontiguousarray(vectors, np.result_type(vectors, rate)) for vectors in (x, y))
     steps, shares = (np.zeros_like(x), np.zeros_like(y)), np.zeros((2, len(rate)))
     settled, left = np.zeros(len(rate), bool), np.arange(len(rate))
+    found = np.array(rate, x.dtype)
     for _ in range(_ROUNDS):
-        last = arithmetic.iterate(own.value[:, left], rate[left], x[:, left], y[:, left])
+        last = arithmetic.iterate(own[:, left], rate[left], x[:, left], y[:, left])
         parts, settled[left] = _judged(last, accuracy)
+        if inner is not pencil:
+            found[left] = rate[left] + 1 / last.ahead
         for whole, part in zip((x, y, *steps, shares), (*last.vectors, *last.steps, parts), strict=True):
             whole[..., left] = part
         settled[left] &= ~last.uneven
         left = left[~settled[left] & ~last.uneven]
         if not len(left):
             break
-        rate = _rate(inner, own.value * arithmetic.brackets(x, y))
-    return _quotient(pencil, weights, x, y, steps, shares, settled, bars, (inner, own))
+        rate = _rate(inner, own * arithmetic.brackets(x, y))
+    return _quotient(pencil, weights, x, y, steps, shares, settled, bars, None if inner is pencil else (inner, found))
 
 
 def quotient(pencil: Any, weights: Any, x: np.ndarray, y: np.ndarray) -> complex:
@@ -127,10 +131,11 @@ def quotient(pencil: Any, weights: Any, x: np.ndarray, y: np.ndarray) -> complex
 
 
 def _inside(condensed: Any, pencil: Any, weights: Any, x: np.ndarray, y: np.ndarray) -> tuple[Any, ...]:
-    """Where iterations take place, the pencil or what is `condensed` of it, with its weights and the vectors there."""
+    """Where iterations take place, the pencil or what is `condensed` of it, with values of its weights and the vectors
+    there."""
     if condensed is None:
-        return pencil, weights, x, y
-    return condensed, condensed.weights(weights), *condensed.restricted(x, y)
+        return pencil, weights.value, x, y
+    return condensed, condensed.weights(weights.value), *condensed.restricted(x, y)
 
 
 def _judged(last: "Iterated", accuracy: float) -> tuple[Any, ...]:
@@ -208,19 +213,17 @@ def _quotient(pencil: Any, weights: Any, x: np.ndarray, y: np.ndarray, steps: An
               bars: bool, inside: Any = None) -> "Eigen":
     """Rayleigh quotients of the pairs (y^H, x), (size, points) or of one (size,), with slope in k and errors.
 
-    `steps` are the last ones of both vectors, with the `shares` of them that steps to come would make. They and the
-    vectors are those `inside`, of the pencil or of what is condensed of it, with its weights.
+    `steps` are the last ones of both vectors, with the `shares` of them that steps to come would make. With `inside`,
+    what is condensed of the pencil and rates that are right but for the error of one vector, all are those of that.
     """
-    arithmetic, (inner, own), squares = pencil.arithmetic, inside or (pencil, weights), None
-    if inner is not pencil:
-        rate, _, _, change = _slopes(own, inner.arithmetic.pairs(x, y, *steps if bars else ()), inner.sides)
-        x, y = inner.continued(weights.value * pencil.powers(rate), x, y)
-        brackets = arithmetic.brackets(x, y)[None]
-        rate, norm, slope, _ = _slopes(weights, brackets, pencil.layout.sides)
-        squares = pencil.stack.squares(y, x) if bars else None
-    else:
-        brackets, squares = arithmetic.changes(x, y, *steps) if bars else (arithmetic.brackets(x, y)[None], None)
-        rate, norm, slope, change = _slopes(weights, brackets, pencil.layout.sides)
+    arithmetic, squares = pencil.arithmetic, None
+    if inside:
+        inner, rate = inside
+        own = weights.value * pencil.powers(rate)
+        x, y = inner.continued(own, x, y)
+        steps = inner.continued(own, *steps) if bars else ()
+    brackets, squares = arithmetic.changes(x, y, *steps) if bars else (arithmetic.brackets(x, y)[None], None)
+    rate, norm, slope, change = _slopes(weights, brackets, pencil.layout.sides)
     power, size = pencil.powers(rate), abs(norm)
     y, weighted = y / norm, weights.value * power
     spread = _sum(weights.spread * abs(brackets[0] * power)) / size

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.sparse import csc_array, csr_array
 
 _BLOCK = 24  # lines
-_ENOUGH = 4  # points from which on it pays to make a real matrix of a complex one
+_ENOUGH = 4, 5000  # points and entries from which on it pays to make a real matrix of a complex one
 
 
 class Lines:
@@ -118,8 +118,8 @@ class Stack:
 
     def _apart(self, vectors: np.ndarray) -> bool:
         """Whether products with these are those of a real matrix."""
-        many = vectors.ndim > 1 and vectors.shape[1] >= _ENOUGH and np.iscomplexobj(vectors)
-        return many and self._real is not None
+        many = vectors.ndim > 1 and vectors.shape[1] >= _ENOUGH[0] and self._matrix.nnz >= _ENOUGH[1]
+        return many and np.iscomplexobj(vectors) and self._real is not None
 
     @cached_property
     def _squares(self) -> Any:

@@ -5,6 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from stability.numerics import bordered as bordered_module
+from stability.numerics import stack as stack_module
 from stability.numerics.bordered import Bordered, Factors, ManyFactors, Places
 from stability.numerics.stack import Lines, Stack
 
@@ -19,7 +21,7 @@ def matrices(request):
     full = rng.standard_normal((PARTS, SIZE, SIZE)) + (1j * rng.standard_normal((PARTS, SIZE, SIZE)) * request.param)
     full = full if request.param else full.real
     if request.param == 2:
-        full = np.where(rng.random(full.shape) < 0.5, full.real, 1j * full.imag)
+        full = np.where((rng.random(full.shape) < 0.5) | np.eye(SIZE, dtype=bool), full.real, 1j * full.imag)
     shift = np.arange(SIZE)[:, None] - np.arange(SIZE)
     banded = (shift <= 3) & (shift >= -2)
     banded[INTERIOR:] = banded[:, INTERIOR:] = True
@@ -43,7 +45,9 @@ def columns(count, seed):
 
 
 @pytest.mark.parametrize("points", [3, 9])
-def test_products_from_either_side(matrices, points):
+def test_products_from_either_side(matrices, points, monkeypatch):
+    """At nine points by real matrices, where no entry has both parts."""
+    monkeypatch.setattr(stack_module, "_ENOUGH", (9, 0))
     full, entries = matrices
     stack = stacked(*entries, PARTS, (SIZE, SIZE))
     weights, x, y = columns(points, 8)[:PARTS], columns(points, 9), np.asfortranarray(columns(points, 10))
@@ -74,7 +78,9 @@ def test_solves_from_either_side(matrices):
     np.testing.assert_allclose(factors.solve_left(matrix.T @ x), x, atol=1e-11)
 
 
-def test_solves_at_many_points_are_those_of_each(matrices):
+@pytest.mark.parametrize("chunk", [1, 10**6], ids=["one by one", "together"])
+def test_solves_at_many_points_are_those_of_each(matrices, chunk, monkeypatch):
+    monkeypatch.setattr(bordered_module, "_CHUNK", chunk)
     full, entries = matrices
     bordered = in_a_band(*entries, PARTS, INTERIOR, BORDER)
     weights, f = np.array([[1.0, 0.5, 2.0], [-0.25, 0.1, 1e9]]), columns(3, 12)

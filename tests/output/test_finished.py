@@ -19,7 +19,7 @@ from stability.output.record import Record
 from stability.status import Status
 
 SOLVERS = [(bordered, "Factors"), (bordered, "ManyFactors"), (solver, "refine"), (solver, "refine_many"),
-           (solver.Solver, "__init__"), (System, "__init__"), (dense, "finite_rates"), (dense, "qr"),
+           (solver.Solver, "__init__"), (System, "__init__"), (dense, "finite_rates"), (dense, "_eigenvalues"),
            (problem, "solve_bvp"), (short_waves, "_coefficients"), (energy, "energy"),
            *((np.linalg, name) for name in ("eig", "eigvals", "eigh", "eigvalsh", "solve", "inv", "lstsq", "svd")),
            *((scipy.linalg, name) for name in ("eig", "eigvals", "solve", "lu_factor", "qr"))]
