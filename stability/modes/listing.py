@@ -29,6 +29,7 @@ _MORE = 10  # eigenvalues beside twice the number asked for that are tried where
 _LOWEST = 3  # rung below which a look at modes near zero growth does not start
 _SPARE = 3  # eigenvalues behind the last one asked for among which the widest gap is taken for the line
 _DRIFT = 1e-4  # relative difference of a rate between two degrees that counts as settled
+_ALIKE = 1e-9  # difference of growth, relative to the rate, that may be rounding where it lies within the errors
 _LEAP = 0.05  # largest relative distance of a refined rate from the dense one
 _FAILURES = 3  # degrees at which a settled list may be found incomplete before that is said
 _COSTLY = 400  # unknowns of a dense problem beyond which a part of the depth asked for may do
@@ -209,7 +210,16 @@ def _joined(sure: Any, known: Any, doubt: Any) -> Any:
 
 
 def _sorted(modes: "list[Mode]") -> tuple[Any, ...]:
-    return tuple(sorted(modes, key=lambda mode: -mode.growth_rate))
+    """By decreasing growth; of modes that grow alike, as mirror images do, first the one that travels downstream
+    faster, whichever growth rounding has made the larger."""
+    alike: list[list[Mode]] = []
+    for mode in sorted(modes, key=lambda mode: -mode.growth_rate):
+        last = alike[-1][-1] if alike else None
+        if last and last.growth_rate - mode.growth_rate <= min(last.error + mode.error, _ALIKE * abs(mode.sigma)):
+            alike[-1].append(mode)
+        else:
+            alike.append([mode])
+    return tuple(mode for group in alike for mode in sorted(group, key=lambda mode: -mode.phase_speed))
 
 
 def _checked(solver: "Solver", found: "Listing", count: int, degree: int) -> "Listing":

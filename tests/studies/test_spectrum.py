@@ -1,11 +1,15 @@
 """All modes at one wavenumber: complete, without spurious ones, each with its error bar."""
 
+from itertools import pairwise
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from samples import reference
 
 from stability import NotResolved, ParameterError, flows, spectrum
 from stability.modes.dense import finite_rates
+from stability.modes.listing import _sorted
 from stability.modes.solver import Solver
 
 
@@ -67,3 +71,22 @@ def test_the_halves_of_a_symmetric_flow_have_its_modes():
     for sigma, error in zip(whole.sigma, whole.error, strict=True):
         nearest = min(parts, key=lambda mode: abs(mode.sigma - sigma))
         assert abs(nearest.sigma - sigma) <= error + nearest.error
+
+
+@pytest.mark.parametrize("flow", [flows.Couette(Re=300.0), flows.Couette(Re=1000.0), flows.Couette(Re=2000.0)], ids=str)
+@pytest.mark.parametrize("k", [0.7, 1.0, 1.9])
+def test_of_mirror_images_the_one_that_travels_downstream_comes_first(flow, k):
+    """They grow alike, and rounding is not to tell their order."""
+    modes = spectrum(flow, k, 8).modes
+    pairs = [(one, other) for one, other in pairwise(modes)
+             if abs(one.c.imag - other.c.imag) < 1e-12 and abs(one.c.real + other.c.real) < 1e-12]
+    assert pairs
+    assert all(one.phase_speed >= other.phase_speed for one, other in pairs)
+
+
+def test_modes_that_grow_alike_within_their_errors_are_ordered_by_speed():
+    def mode(growth, speed, error=1e-12):
+        return SimpleNamespace(growth_rate=growth, phase_speed=speed, error=error, sigma=complex(growth, -speed))
+
+    order = [mode(3.0, 0.0), mode(2.0 - 1e-13, 1.0), mode(2.0, -1.0), mode(1.0, 0.5), mode(1.0 - 1e-5, 0.7, 1e-3)]
+    assert list(_sorted(order[::-1])) == list(_sorted(order)) == order
