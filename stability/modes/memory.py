@@ -56,7 +56,7 @@ def branch_of(solver: "Solver", make: Callable[..., Any], wavenumbers: Any) -> I
         return
     if known:
         known = _up_to(max(wavenumbers), known)
-    if not branch:
+    if not branch and solver.halves == (solver,):  # else those of the halves matter
         solver.prepare(np.array([*(known or LOOKS), *wavenumbers[:_AHEAD]]))
     branch = branch or make(solver, known)
     yield branch
