@@ -41,6 +41,7 @@ _BESIDE = 1 + 1e-9  # factor of a rate where its matrix is not singular, if it i
 _RISE = 0.9  # of the rise of a degree that is foreseen: what is needed is mostly a little less (measured)
 _FEW = 3  # wavenumbers between two nodes that are refined one by one
 _DRIFT = 0.01  # largest relative difference of a refined rate from its interpolation
+_TINY = np.finfo(float).tiny
 _ASTRAY = 0.5  # largest deviation of the overlap with the next node from 1
 
 
@@ -58,7 +59,7 @@ class Branch:
         self._rough = rough or solver.rough(_ROUGH)
         self._walks = {side: Walk(self._rough, start, solver) for side in (1, -1)}
         self.answers: dict[float, Mode] = {}
-        self._rounding = 0.0  # relative, of a mode that was refined: others are much like it
+        self._rounding = _common_rounding(start) if final else 0.0  # relative, of a mode that was refined
         self.lost = {}
 
     @property
@@ -185,13 +186,14 @@ class Branch:
     def _interpolating(self, places: list[Any]) -> "dict[float, Mode]":
         """{k: mode} of what settles next to the interpolation, at `places` (k, (nodes of the walk, index of the one
         before)), all that take the same degree together."""
+        found: dict[float, Any] = {}
         if not self._rounding:
             k, (nodes, index) = places[len(places) // 2]
-            mode = self._between(nodes, index, k)
-            self._rounding = 0.0 if isinstance(mode, ModeLost) else _SURE * mode.rounding / abs(mode.sigma)
+            mode = found[k] = self._between(nodes, index, k)
+            self._rounding = 0.0 if isinstance(mode, ModeLost) else _common_rounding(mode)
         gaps: dict[Any, Any] = {}
         for k, (nodes, index) in places:
-            if len(nodes) > 1 and k != nodes[index].k:
+            if k not in found and len(nodes) > 1 and k != nodes[index].k:
                 gaps.setdefault((id(nodes), index), (nodes, index, []))[-1].append(k)
         batches: dict[int, list[Any]] = {}
         for nodes, index, inside in gaps.values():
@@ -199,7 +201,6 @@ class Branch:
             for degree in dict.fromkeys(degrees):
                 some = [k for k, own in zip(inside, degrees, strict=True) if own == degree]
                 batches.setdefault(degree, []).append((nodes, index, some))
-        found: dict[float, Mode] = {}
         for degree, batch in batches.items():
             found |= self._refined(degree, batch)
         return found
@@ -244,6 +245,11 @@ class Branch:
                                    [np.array(rows) for rows in zip(*again, strict=True)], higher,
                                    [node for _, node in pairs], degree)
         return found
+
+
+def _common_rounding(mode: "Mode") -> float:
+    """What rounding does to other modes on the branch at least, relative to their rates."""
+    return _SURE * mode.rounding / max(abs(mode.sigma), _TINY)
 
 
 def _near(mode: "Mode", node: "Mode", rate: complex) -> bool:

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from .solver import Solver
 
 _LONG = 0.1  # shortest step of a walk, in log k, from whose modes one steps; measured: none is wrong from 0.05 on ...
-_SHARE = 0.1  # ... and largest change of the logarithms of parameters, in its units; nor with ten times as much
-_SMALL = 0.25  # largest relative change of a rate
+_SHARE = 0.2  # ... and largest change of the logarithms of parameters, in its units; nor with five times as much
+_SMALL = 0.4  # largest relative change of a rate
 _BEND = 0.05  # largest departure of a change from its first order, relative
 _FLAT = 1e-6  # departure, relative to the rate, that is never refused
 _OVERLAP = 0.02  # largest deviation of the overlap from 1

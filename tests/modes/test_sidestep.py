@@ -30,13 +30,13 @@ def walks(monkeypatch):
 
 
 def test_random_flows_close_together(remembered, monkeypatch):  # noqa: F811
-    """In chains of flows that differ by at most 5 % in a parameter each answer is that of its flow alone."""
+    """In chains of flows that differ by at most 10 % in a parameter each answer is that of its flow alone."""
     steps, stepped = [], memory.sidestepped
     monkeypatch.setattr(memory, "sidestepped", lambda *given: steps.append(stepped(*given)) or steps[-1])
     rng = np.random.default_rng(4)
     for flow, wavenumbers in random_flows(CHAINS, 31):
         memory.forget()
-        loop = chain(flow, rng, steps=4, far=0.05)
+        loop = chain(flow, rng, steps=4, far=0.1)
         warm = [dispersion(one, wavenumbers[:1], strict=False) for one in loop]
         for one, relation in zip(loop, warm, strict=True):
             assert alike(cold(one, wavenumbers[:1]), relation), (one, wavenumbers[0])
@@ -52,7 +52,7 @@ def test_a_loop_walks_for_few_of_its_flows(remembered, walks):  # noqa: F811
 
 
 @pytest.mark.parametrize("second", [
-    flows.Dune(shields=2.2), flows.Dune(shields=2.01, depth=10.0), flows.Dune(shields=2.01, fluid="layer")], ids=str)
+    flows.Dune(shields=2.3), flows.Dune(shields=2.01, depth=10.0), flows.Dune(shields=2.01, fluid="layer")], ids=str)
 def test_what_is_farther_off_is_walked_for(second, remembered, walks):  # noqa: F811
     dispersion(flows.Dune(shields=2.0), 1.0)
     dispersion(second, 1.0)
@@ -70,9 +70,9 @@ def test_other_questions_are_walked_for(remembered, walks):  # noqa: F811
 
 def test_one_steps_from_flows_that_were_walked_for_alone(remembered, walks):  # noqa: F811
     """Many small steps in a row would go as far as one that is too large."""
-    for shields in (2.0, 2.04, 2.08, 2.12):
-        dispersion(flows.Dune(shields=shields), 1.0)
-    assert [flow.shields for flow in walks] == [2.0, 2.12]
+    for Re in (10.0, 10.5, 11.0, 11.3):
+        dispersion(flows.Dune(Re=Re), 1.0)
+    assert [flow.Re for flow in walks] == [10.0, 11.3]
 
 
 def test_flows_from_elsewhere_are_walked_for(remembered, walks):  # noqa: F811
@@ -94,8 +94,8 @@ def test_real_modes_are_walked_for(remembered, walks):  # noqa: F811
 
 
 def test_nobody_steps_from_a_walk_of_short_steps():
-    assert sidestep.near_enough(0.05, 0.55)
-    assert not sidestep.near_enough(0.06, 0.55)
+    assert sidestep.near_enough(0.1, 0.55)
+    assert not sidestep.near_enough(0.12, 0.55)
     assert not sidestep.near_enough(1e-4, 0.05)
 
 
