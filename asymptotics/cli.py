@@ -204,8 +204,8 @@ def _check(arguments: argparse.Namespace) -> int:
     if laws and header.get("law", laws[0]) not in laws:
         raise BadUsage(f"{source(arguments.file)} holds friction law {header['law']}; the expansions of "
                        f"{arguments.flow} are those of law {' and '.join(laws)}")
-    names = {parameter.name for parameter in flow.PARAMETERS}
-    values = {name: value for name, value in header.items() if name in names} | _given(arguments)
+    parameters = {parameter.name for parameter in flow.PARAMETERS}
+    values = {name: value for name, value in header.items() if name in parameters} | _given(arguments)
     expansion = expand(arguments.flow, arguments.regime, arguments.order, **values)
     missing = [name for name, value in expansion.parameters.items() if value is None]
     if expansion.gauge.name != "k" or missing:

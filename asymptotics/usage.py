@@ -73,7 +73,7 @@ def add_parameters(verb: "Parser", flags: bool) -> None:
         return
     from . import flows
 
-    known = {parameter.flag: parameter.name for name in flows.names() for parameter in flows.load(name).PARAMETERS}
+    known = {parameter.flag: parameter.name for name in names() for parameter in flows.load(name).PARAMETERS}
     for flag, name in known.items():
         for spelling in dict.fromkeys((flag, f"--{name}")):
             if spelling in verb._option_string_actions:

@@ -30,9 +30,9 @@ if TYPE_CHECKING:
 
 _ROUGH = 1e-4  # tolerance of the walk; what is asked for is refined to full accuracy
 _FIRST, _FACTOR, _TRIES = 0.04, 5.0, 30  # wavenumbers at which the long-wave limit is sought: each a part of the last
-LOOKS = tuple(_FIRST / _FACTOR**look for look in range(3))  # the first ones
 _AGREEMENT = 0.03  # of the surface mode with its long-wave limit, in value and in slope
 _CONFIRMED = 3  # wavenumbers in a row, each a part of the last, at which it must agree
+LOOKS = tuple(_FIRST / _FACTOR**look for look in range(_CONFIRMED))  # the first at which it is sought
 _NO_FARTHER = 1.5, 1e-3  # factor in its distance from the limit that each may have over the one before, and a floor
 _TENDS, _CLOSE = 0.5, 1e-3  # limit of the difference over that at the last of them where a law is wrong; its accuracy
 _GLANCE = 0.3  # relative distance of a rate from a long-wave limit at which a mode that is foreseen may be meant

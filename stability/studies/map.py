@@ -207,7 +207,7 @@ def carry_out(request: Any, *, executor: Any = None, workers: Any = 1, journal: 
     """Return the `Map` of a request; see `parameter_map`. Workers are forked from this process if they may."""
     workers = _check_means(executor, workers, journal)
     pieces, report = request.pieces(), report or (lambda done, total: None)
-    with _journal(request, journal) if journal is not None else nullcontext() as kept:
+    with _journal(request, pieces, journal) if journal is not None else nullcontext() as kept:
         done = dict(kept.done) if kept else {}
         left = [piece for piece in pieces if piece.index not in done]
         count = request.size - sum(piece.points for piece in left)
@@ -226,12 +226,12 @@ def carry_out(request: Any, *, executor: Any = None, workers: Any = 1, journal: 
 def points_kept(request: Any, journal: Any) -> int:
     """Return how many points of a request its journal holds: what was written, whether or not it was counted."""
     pieces = request.pieces()
-    with _journal(request, journal) as kept:
+    with _journal(request, pieces, journal) as kept:
         return sum(pieces[index].points for index in kept.done)
 
 
-def _journal(request: Any, path: Any) -> Journal:
-    return Journal(path, request.description(), [(piece.points, len(request.results)) for piece in request.pieces()])
+def _journal(request: Any, pieces: Any, path: Any) -> Journal:
+    return Journal(path, request.description(), [(piece.points, len(request.results)) for piece in pieces])
 
 
 def _check_means(executor: Any, workers: int, journal: Any) -> int:
