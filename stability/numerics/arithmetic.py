@@ -1,4 +1,4 @@
-"""What refining an eigenvalue takes of a pencil: two inverse iterations from either side, and products of its parts.
+"""What refining an eigenvalue takes of a pencil: inverse iterations from either side, and products of its parts.
 
 `refine` says what is iterated and judges it; how the numbers come about is said here, with numpy and scipy, and in
 `kernel`, compiled. Vectors are arrays (size,) at one point and (size, points) at many, weights (parts,) and
@@ -20,9 +20,9 @@ _TINY = np.finfo(float).tiny
 
 @dataclass(slots=True)
 class Iterated:
-    """Right and left `vectors` after two inverse iterations, and their last `steps`.
+    """Right and left `vectors` after two inverse iterations, or four, and their last `steps`.
 
-    `sizes` (3, 2, ...) are those of the first step, the last step and the vector of either. Vectors are scaled
+    `sizes` (3, 2, ...) are those of the last step but one, the last step and the vector of either. Vectors are scaled
     by one component. `uneven` tells where the matrix needs scales: at many points nothing holds there. The eigenvalue
     less the rate is the inverse of `ahead`, by which the last iteration has made that component larger; None where
     nobody asks for it.
@@ -34,6 +34,11 @@ class Iterated:
     uneven: Any
     ahead: Any = None
 
+    @property
+    def arrays(self) -> tuple[np.ndarray, ...]:
+        """All that iterating once more makes anew at many points."""
+        return *self.vectors, *self.steps, self.sizes, self.ahead
+
 
 class Arithmetic:
     """The numbers of one `pencil`, with numpy and scipy: all points at once."""
@@ -41,12 +46,26 @@ class Arithmetic:
     def __init__(self, pencil: Any) -> None:
         self._pencil = pencil
 
-    def iterate(self, weights: np.ndarray, rate: Any, x: np.ndarray, y: np.ndarray) -> "Iterated":
-        """Two inverse iterations from either side with one factorisation of A - rate B.
+    def iterate(self, weights: np.ndarray, rate: Any, x: np.ndarray, y: np.ndarray, accuracy: float) -> "Iterated":
+        """Two inverse iterations from either side with one factorisation of A - rate B, and two more with the same one
+        where those are about to make the vectors as accurate as they shall be.
 
         At one point raises ModeLost where it stays singular, however slightly the rate is changed.
         """
         factors = self._pencil.factors(weights, rate) if np.ndim(rate) else self.factors(weights, rate)
+        last = self._iterated(factors, weights, x, y)
+        lacking = nearly(last.sizes, accuracy)
+        if not np.any(lacking):
+            return last
+        if np.all(lacking):
+            return self._iterated(factors, weights, *last.vectors)
+        again = self._iterated(factors.at(lacking), weights[:, lacking], *(one[:, lacking] for one in last.vectors))
+        for whole, part in zip(last.arrays, again.arrays, strict=True):
+            whole[..., lacking] = part
+        return last
+
+    def _iterated(self, factors: Any, weights: np.ndarray, x: np.ndarray, y: np.ndarray) -> "Iterated":
+        """Two inverse iterations from either side."""
         right, left = self._pencil.b_products(weights)
         x, dx, x_sizes, ahead = _iterated(right, factors.solve, x)
         y, dy, y_sizes, _ = _iterated(left, factors.solve_left, y)
@@ -95,6 +114,15 @@ def _iterated(b: Callable[..., Any], solve: Callable[..., Any], vector: np.ndarr
     second = second * (1 / ahead)
     last = second - first
     return second, last, (size_of(first - start), size_of(last), size_of(second)), ahead
+
+
+def nearly(sizes: np.ndarray, accuracy: float) -> Any:
+    """Whether vectors whose steps and own `sizes` (3, 2, ...) are these are less accurate than they shall be, and two
+    more iterations would do: each shrinks the error by the ratio of the last steps."""
+    before, last, size = sizes
+    shrinks = last / np.maximum(np.maximum(before, last), _TINY)
+    error = last * shrinks / size
+    return (error.max(axis=0) >= accuracy) & ((error * shrinks**2).max(axis=0) < accuracy)
 
 
 def size_of(vectors: np.ndarray) -> Any:

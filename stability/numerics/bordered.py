@@ -7,6 +7,7 @@ The interior is factorised as a band (LAPACK gbtrf); the border follows by block
 """
 
 from contextlib import suppress
+from copy import copy
 from functools import cached_property
 from typing import Any
 
@@ -231,6 +232,14 @@ class ManyFactors:
         self._bottom = bottom[..., : self._interior]
         self._coupled = np.array([inner.coupled(one) for inner, one in zip(self._inner, right, strict=True)])
         self._schur = bottom[..., self._interior:] - self._bottom @ self._coupled
+
+    def at(self, which: np.ndarray) -> "ManyFactors":
+        """Return those of some of the points, a mask (points,)."""
+        some = copy(self)
+        some.uneven, some._inner = self.uneven[which], [self._inner[one] for one in np.flatnonzero(which)]
+        some._bottom, some._coupled = self._bottom[which], self._coupled[which]
+        some._schur, some._border = self._schur[which], self._border[which]
+        return some
 
     def phases(self) -> np.ndarray:
         """Return the determinants over their moduli (points,)."""

@@ -79,7 +79,7 @@ def refine(pencil: Any, weights: Any, rate: complex, x: np.ndarray | None = None
     for _ in range(_FACTORISATIONS):
         if pencil.real and not np.imag(rate):
             rate, x, y = np.real(rate), x.real, y.real
-        last = arithmetic.iterate(own, rate, x, y)
+        last = arithmetic.iterate(own, rate, x, y, accuracy)
         x, y = last.vectors
         shares, settled = _judged(last, accuracy)
         if settled:
@@ -110,7 +110,7 @@ def refine_many(pencil: Any, weights: Any, rate: np.ndarray | None, x: np.ndarra
     settled, left = np.zeros(len(rate), bool), np.arange(len(rate))
     found = np.array(rate, x.dtype)
     for _ in range(_ROUNDS):
-        last = arithmetic.iterate(own[:, left], rate[left], x[:, left], y[:, left])
+        last = arithmetic.iterate(own[:, left], rate[left], x[:, left], y[:, left], accuracy)
         parts, settled[left] = _judged(last, accuracy)
         if inner is not pencil:
             found[left] = rate[left] + 1 / last.ahead

@@ -113,7 +113,7 @@ def test_iterations_and_products_are_those_of_full_matrices(kernel, carrier, siz
     weights[0] = 1 + 0.1 * weights[0]
     x, y, dx, dy = (vectors(rng, (size, *shape), turned) for _ in range(4))
     numbers = carrier(pencil, kernel) if carrier is Compiled else carrier(pencil)
-    iterated = numbers.iterate(weights, rate, x, y)
+    iterated = numbers.iterate(weights, rate, x, y, 0.0)
     assert not np.any(iterated.uneven)
     for index in np.ndindex(shape):
         point = (..., *index)
@@ -273,15 +273,38 @@ def test_a_singular_factor_is_left_to_numpy_and_spoils_no_other(kernel, part):
     value[1, 0 if part == "interior" else -1] = -1.0  # A - rate B is singular at 1 there
     pencil = pencil_of(np.array([np.diag(row) for row in value]), 6)
     x, y = np.random.default_rng(3).standard_normal((2, 8))
-    one, other = (numbers.iterate(np.ones(2), 1.0, x, y) for numbers in (Compiled(pencil, kernel), Arithmetic(pencil)))
+    one, other = (numbers.iterate(np.ones(2), 1.0, x, y, 0.0)
+                  for numbers in (Compiled(pencil, kernel), Arithmetic(pencil)))
     np.testing.assert_array_equal(one.vectors, other.vectors)
     both = (np.tile(vector[:, None], 2) for vector in (x, y))
-    many = Compiled(pencil, kernel).iterate(np.ones((2, 2)), np.array([1.0, 0.5]), *both)
+    many = Compiled(pencil, kernel).iterate(np.ones((2, 2)), np.array([1.0, 0.5]), *both, 0.0)
     assert np.isnan(many.sizes[..., 0]).all()
     assert np.isfinite(many.sizes[..., 1]).all()
     np.testing.assert_array_equal(many.vectors[0][:, 0], x)
     with pytest.raises(ModeLost, match="singular"):
-        Compiled(pencil, kernel).iterate(np.zeros(2), 1.0, x, y)
+        Compiled(pencil, kernel).iterate(np.zeros(2), 1.0, x, y, 0.0)
+
+
+@pytest.mark.parametrize("carrier", [Arithmetic, Compiled])
+@pytest.mark.parametrize("points", [[0], [1], [2], [0, 1, 2], [1, 1, 1]], ids=str)
+def test_a_factorisation_serves_four_iterations_where_those_will_do(kernel, carrier, points):
+    """The error shrinks by the distance of the rate to the eigenvalue 1 over that to the next one, 2."""
+    pencil = pencil_of(np.array([np.diag(np.arange(1.0, 9.0)), -np.eye(8)]), 6)
+    rates, taken = 1 - np.array([1e-5, 1e-2, 0.9])[points], np.array([2, 4, 2])[points]  # settled, nearly, far from it
+    start = np.random.default_rng(3).uniform(0.1, 0.2, (2, 8, len(points)))
+    start[:, 0] = 1.0
+    numbers = carrier(*([pencil, kernel] if carrier is Compiled else [pencil]))
+    alone = len(points) == 1
+    x, y = start[..., 0] if alone else start
+    found = numbers.iterate(np.ones(2 if alone else (2, len(points))), rates[0] if alone else rates, x, y, 1e-6)
+    vectors, steps = (np.reshape(part, start.shape) for part in (found.vectors, found.steps))
+    sizes = np.reshape(found.sizes, (3, 2, len(points)))
+    shrinks = (1 - rates) / (np.arange(1.0, 9.0)[:, None] - rates)
+    last, before, first = (start * shrinks**power for power in (taken, taken - 1, taken - 2))
+    np.testing.assert_allclose(vectors, last, rtol=1e-12)
+    np.testing.assert_allclose(steps, last - before, rtol=1e-9, atol=1e-14)
+    lengths = [np.linalg.norm(step, axis=1) for step in (before - first, last - before, last)]
+    np.testing.assert_allclose(sizes, lengths, rtol=1e-9, atol=1e-14)
 
 
 @pytest.mark.parametrize("carrier", [Arithmetic, Compiled])
@@ -293,7 +316,7 @@ def test_rows_with_small_pivots_are_exchanged(kernel, carrier):
     full[1] = -np.eye(4)
     pencil = pencil_of(full, 2)
     x, y = np.random.default_rng(4).standard_normal((2, 4))
-    found = carrier(*([pencil, kernel] if carrier is Compiled else [pencil])).iterate(np.ones(2), 0.0, x, y)
+    found = carrier(*([pencil, kernel] if carrier is Compiled else [pencil])).iterate(np.ones(2), 0.0, x, y, 0.0)
     for vector, start in zip(found.vectors, (x, y), strict=True):  # the block is symmetric
         exact = np.linalg.solve(full[0], np.linalg.solve(full[0], start))
         np.testing.assert_allclose(vector, exact / exact[np.argmin(abs(vector - 1))], rtol=1e-13)

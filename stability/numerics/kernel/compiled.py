@@ -35,15 +35,15 @@ class Compiled(Arithmetic):
         super().__init__(pencil)
         self._library = library
 
-    def iterate(self, weights: np.ndarray, rate: Any, x: np.ndarray, y: np.ndarray) -> "Iterated":
+    def iterate(self, weights: np.ndarray, rate: Any, x: np.ndarray, y: np.ndarray, accuracy: float) -> "Iterated":
         kind, many = self._kind(weights, rate, x, y), x.ndim > 1
         vectors = np.empty((4, *x.shape[::-1]), kind)  # x, y and their steps
         vectors[0], vectors[1] = x.T, y.T
         sizes, flags = np.empty((*x.shape[1:], 2, 3)), np.empty(x.shape[1:], np.intc)
-        self._call("iterate", kind, self._pencil.packed, x[0].size, UNEVEN, np.array(weights.T, kind, order="C"),
-                   np.array(rate, kind), vectors, sizes, flags)
+        self._call("iterate", kind, self._pencil.packed, x[0].size, UNEVEN, accuracy,
+                   np.array(weights.T, kind, order="C"), np.array(rate, kind), vectors, sizes, flags)
         if not many and flags:
-            return super().iterate(weights, rate, x, y)
+            return super().iterate(weights, rate, x, y, accuracy)
         x, y, dx, dy = vectors.transpose(0, 2, 1) if many else vectors
         return Iterated((x, y), (dx, dy), sizes.T, flags == 1 if many else False)
 

@@ -2,6 +2,7 @@
 
    No memory is kept between calls and nothing is shared: threads may call it at the same time.
 */
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,6 +32,19 @@ typedef struct {
     const int *part, *row, *start, *column;
     const double *re, *im;
 } Lines;
+
+/* Whether vectors are less accurate than they shall be, and two more iterations would do: each shrinks the error by the
+   ratio of the last steps. Sizes (2, 3) are those of the step before, of the last one and of the vector, of either side. */
+static int nearly(const double *sizes, double accuracy)
+{
+    double now = 0, then = 0;
+    for (const double *of = sizes; of < sizes + 6; of += 3) {
+        const double shrinks = of[1] / fmax(fmax(of[0], of[1]), DBL_MIN), error = of[1] * shrinks / of[2];
+        now = fmax(now, error);
+        then = fmax(then, error * shrinks * shrinks);
+    }
+    return now >= accuracy && then < accuracy;
+}
 
 #define COMPLEX 0
 #define NAME(name) name##_real

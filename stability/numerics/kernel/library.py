@@ -24,8 +24,8 @@ class LinesInC(ctypes.Structure):
                 *((name, _PLACE) for name in ("part", "row", "start", "column", "re", "im"))]
 
 
-_FUNCTIONS = {"iterate": (ctypes.c_int, _COUNT, _REAL, *5 * (_PLACE,)), "brackets": (None, _COUNT, *6 * (_PLACE,)),
-              "beyond": (None, _COUNT, _COUNT, *3 * (_PLACE,))}
+_FUNCTIONS = {"iterate": (ctypes.c_int, _COUNT, _REAL, _REAL, *5 * (_PLACE,)),
+              "brackets": (None, _COUNT, *6 * (_PLACE,)), "beyond": (None, _COUNT, _COUNT, *3 * (_PLACE,))}
 
 
 @lru_cache(maxsize=1)

@@ -61,14 +61,15 @@ static void NAME(iterate_side)(Work *w, const number *weights, int left, number 
         sizes[i] = sqrt(squares[i]);
 }
 
-/* At every point: factorise A - rate B and iterate from both sides.
+/* At every point: factorise A - rate B and iterate from both sides, twice where two more iterations are about to make
+   vectors right to `accuracy`.
 
    weights (points, parts), those of B times `rates` (points,) in the matrix; vectors (4, points, size) are x and y, which
    are changed, and then their last steps; sizes (points, 2, 3) are those of the steps and vectors of either side; flags
    (points,) are 1 where entries exceed `uneven` and 2 where the matrix is singular: there x and y stay as they are, and
    sizes are not numbers. Returns 0 where memory is lacking. */
-EXPORT int NAME(iterate)(const Lines *p, long points, double uneven, const number *weights, const number *rates,
-                         number *vectors, double *sizes, int *flags)
+EXPORT int NAME(iterate)(const Lines *p, long points, double uneven, double accuracy, const number *weights,
+                         const number *rates, number *vectors, double *sizes, int *flags)
 {
     Work work = {.memory = NULL}, *w = &work;
     const long count = p->interior + p->border, all_of_one = points * count;
@@ -87,9 +88,10 @@ EXPORT int NAME(iterate)(const Lines *p, long points, double uneven, const numbe
         else if (!NAME(eliminate)(w) || !NAME(eliminate_bottom)(w) || !NAME(invert_corner)(w))
             flags[point] = 2;
         else
-            for (int left = 0; left < 2; left++)
-                NAME(iterate_side)(w, weights, left, vectors + left * all_of_one, vectors + (2 + left) * all_of_one,
-                                   sizes + 3 * left);
+            for (int round = 0; round < 2 && (!round || nearly(sizes, accuracy)); round++)
+                for (int left = 0; left < 2; left++)
+                    NAME(iterate_side)(w, weights, left, vectors + left * all_of_one, vectors + (2 + left) * all_of_one,
+                                       sizes + 3 * left);
     }
     free(weighted);
     free(w->memory);
