@@ -21,10 +21,11 @@ from ..flows.sources import shipped
 from .foresight import Foresight
 from .interpolation import hermite, interpolated, intervals
 from .solver import transfer
-from .tracking import Walk
+from .tracking import PACE, Walk
 
 if TYPE_CHECKING:
     from ..flows.base import Flow
+    from ..numerics.walker import Pace
     from .mode import Mode
     from .solver import Solver
 
@@ -50,14 +51,14 @@ class Branch:
 
     `lost` maps a side, 1 for rising k and -1 for falling k, to the reason why the walk ended there, `answers` the last
     wavenumbers asked for, if few, to their modes. `seen` are modes that were looked at before the start was found;
-    `final` tells that the start is as `solver` has it.
+    `final` tells that the start is as `solver` has it; `pace` is that of the walks.
     """
 
     def __init__(self, solver: "Solver", start: "Mode", rough: "Solver | None" = None, seen: Any = (),
-                 final: bool = False) -> None:
+                 final: bool = False, pace: "Pace" = PACE) -> None:
         self.solver, self.start, self._seen, self._final = solver, start, seen, final
         self._rough = rough or solver.rough(_ROUGH)
-        self._walks = {side: Walk(self._rough, start, solver) for side in (1, -1)}
+        self._walks = {side: Walk(self._rough, start, solver, pace) for side in (1, -1)}
         self.answers: dict[float, Mode] = {}
         self._rounding = _common_rounding(start) if final else 0.0  # relative, of a mode that was refined
         self.lost = {}

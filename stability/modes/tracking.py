@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _LARGEST_STEP = 0.6  # in log k
 _CLOSE = 0.02  # step below which a collision is looked for, and a rough walk goes on with full accuracy
 _NARROW = 5e-3  # step that tells of another mode near by
-_PACE = Pace(0.3, _LARGEST_STEP, 1e-8)
+PACE = Pace(0.3, _LARGEST_STEP, 1e-8)
 _PREDICTION = 0.05  # relative error of the predictor at which the step length is kept
 _LIKELY = 0.05  # largest relative distance of a mode that is foreseen from where it is expected
 _ORDER, _EXACT = 4, 1e-12  # of the error of the predictor in the step; an error too small to divide by
@@ -32,7 +32,7 @@ _REAL = 1e-10  # largest imaginary part, relative, of a rate that is real but fo
 _FARTHEST, _BEYOND = 1e6, 1e-4  # lengths of the last step within which a collision is crossed; least way behind it
 _NEARNESS = 1e-3, 1e-5  # relative distances at which a collision is placed by Newton: its error is their square
 _BEND = 0.1  # largest departure of a step from the mean of its end slopes, relative
-_OVERLAP = 0.4  # largest deviation of the overlap from 1
+_OVERLAP, _TURN = 0.4, 0.3  # largest deviation of the overlap from 1, and the one at which the step length is kept
 _STEPS, _STRETCH = 1000, 100  # attempts, and after how many of them it is asked whether those left can suffice
 _LEAST_WAY = 0.1  # least way in log k in every _STRETCH attempts of a walk that has no end
 _BLIND = 100  # attempts in a row that the largest degree does not resolve
@@ -75,15 +75,15 @@ class Walk(Walker):
 
     checks = ("trusted", "same_kind", "smooth", "overlaps")
 
-    def __init__(self, solver: "Solver", start: "Mode", closer: "Solver | None" = None) -> None:
-        super().__init__(_PACE)
+    def __init__(self, solver: "Solver", start: "Mode", closer: "Solver | None" = None, pace: Pace = PACE) -> None:
+        super().__init__(pace)
         self.solver, self.closer = solver, closer
         self.before: Mode | None = None
         self.now = start
         self.shortest = self.step, start.k
         self.collisions = []
         self.segments = [[start]]
-        self._attempts, self._blind, self._behind = 0, 0, start.k
+        self._attempts, self._blind, self._behind, self._turn = 0, 0, start.k, 0.0
 
     def to(self, k: float) -> "Mode":
         """Step to wavenumber k."""
@@ -144,7 +144,8 @@ class Walk(Walker):
 
     def factor(self, new: "Mode", guess: complex) -> float:
         miss = abs(new.rate - guess) / (abs(new.rate) + abs(new.k * new.rate_slope)) + _EXACT
-        return min(2.0, max(0.5, (_PREDICTION / miss) ** (1 / _ORDER)))
+        steady = (_TURN / (self._turn + _EXACT)) ** 0.5  # the overlap deviates by the square of the step
+        return min(2.0, max(0.5, (_PREDICTION / miss) ** (1 / _ORDER)), steady)
 
     def accept(self, to: Any, new: Any) -> None:
         self.before, self.now = self.now, new
@@ -173,7 +174,8 @@ class Walk(Walker):
 
     def overlaps(self, mode: "Mode", guess: complex) -> bool:
         """Whether the new and the old eigenvectors are biorthogonal partners."""
-        return abs(self.solver.overlap(self.now, mode) - 1) < _OVERLAP
+        self._turn = abs(self.solver.overlap(self.now, mode) - 1)
+        return self._turn < _OVERLAP
 
     def _lost(self, why: Any) -> Any:
         return ModeLost(f"{self.solver.flow}: the mode is lost at k = {self.now.k:.6g}, "

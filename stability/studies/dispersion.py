@@ -17,7 +17,7 @@ from ..modes.memory import beside, branch_of
 from ..modes.mode import Mode, require
 from ..modes.short_waves import ill_posed_somewhere, ill_posed_strips
 from ..modes.solver import Solver
-from ..modes.tracking import Collision, Encounter
+from ..modes.tracking import PACE, Collision, Encounter
 from ..numerics.threads import one_thread
 from ..output.panels import GROWTH_RATE, LINE, PHASE_SPEED, POINTS, WAVENUMBER, Axis, Curve, Panel, scale_of
 from ..output.record import Record
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 GROUP_SPEED = Axis("group_speed", "group speed $c_g$")
 
 _NOT_LOOKED = "the flow is ill posed; whether an internal mode outgrows the surface mode is told with rivals=True"
+_PACE = replace(PACE, first=0.25)  # of a mode that begins at waves as long as the flow is thick: vectors turn faster
 _PORTION = 200  # wavenumbers followed before what is done is handed over
 
 
@@ -283,7 +284,7 @@ def leading_branch(solver: Solver, known: Any = None) -> Branch:
     best = max(mode.growth_rate - mode.error for mode in rivals)
     mode = max((mode for mode in rivals if mode.growth_rate + mode.error >= best), key=lambda mode: mode.phase_speed)
     (half,) = (half for half in solver.halves if half.flow == mode.flow)
-    return Branch(half, mode, rough_solver(half, known), final=True)
+    return Branch(half, mode, rough_solver(half, known), final=True, pace=_PACE)
 
 
 def _most_unstable(solver: Solver, wavenumbers: Any) -> Iterator[Any]:
