@@ -118,16 +118,19 @@ class Structure:
 
 
 class System:
-    """All `equations` and `conditions` of a flow, with the names of its `unknowns` and `surfaces`."""
+    """All `equations` and `conditions` of a flow, with the names of its `unknowns` and `surfaces`.
 
-    def __init__(self, flow: Any) -> None:
+    A `twin` is the system of another symmetry class of the same layer: its equations are those of this one.
+    """
+
+    def __init__(self, flow: Any, twin: "System | None" = None) -> None:
         names = SimpleNamespace(k=variable("k"), rate=variable("rate"),
                                 **{name: variable(name) for name in (*flow.functions, *flow.surfaces)})
         layers = flow.layers(names)
         self.fields = tuple(f"{layer.name}.{field}" for layer in layers for field in FIELDS)
         self.surfaces, self.reflection = tuple(flow.surfaces), flow.reflection
-        self.equations = tuple(equation for index in range(len(layers))
-                               for equation in self._equations(flow, layers, index, names))
+        self.equations = twin.equations if twin else tuple(equation for index in range(len(layers))
+                                                           for equation in self._equations(flow, layers, index, names))
         edges = SimpleNamespace(**{layer.name: tuple(_edge(layer, end) for end in (0, 1)) for layer in layers})
         given = flow.conditions(edges, names)
         _check_conditions(flow, given)
@@ -136,7 +139,7 @@ class System:
         self._growths = tuple(layer.growth for layer in layers)
         self.growths = _relative(self._growths)
         _check_count(flow, layers, len(self.conditions))
-        if self.reflection:
+        if self.reflection and not twin:
             self.equations = _mirrored(flow, layers, self.equations)
 
     @property

@@ -11,6 +11,7 @@ from ..equations.pencil import Layout, Pencil, Weights, weights_of
 from ..equations.system import System
 from ..equations.table import Table
 from ..flows.base import check_flow
+from ..flows.sources import shipped
 from ..numerics.refine import VECTOR, refine, refine_many
 from ..status import RESOLVED, unresolved
 from .accuracy import TOLERANCE, USUAL
@@ -43,16 +44,17 @@ _ROUNDING = 4.0  # standard deviations of the accumulated rounding that the erro
 class Assembly:
     """The pencils of a system of equations, each degree assembled when first asked for.
 
-    Where their entries lie is kept for all flows with the same structure.
+    Where their entries lie is kept for all flows with the same structure. The `twin` is that of another symmetry class,
+    if one is known.
     """
 
-    def __init__(self, flow: "Flow") -> None:
-        self._flow = flow
+    def __init__(self, flow: "Flow", twin: "Assembly | None" = None) -> None:
+        self._flow, self._twin = flow, twin
         self._values, self._pencils = {}, {}
 
     @cached_property
     def system(self) -> System:
-        return System(self._flow)
+        return System(self._flow, self._twin and self._twin.system)
 
     def pencil(self, degree: int) -> Pencil:
         if degree not in self._pencils:
@@ -136,8 +138,12 @@ class Solver:
     @cached_property
     def _halves(self) -> tuple[Any, ...]:
         parts = self.flow.halves()
-        return () if parts == (self.flow,) else tuple(Solver(half, self.accuracy, bars=self.bars)
-                                                      for half in parts)
+        if parts == (self.flow,):
+            return ()
+        first = Assembly(parts[0])
+        twin = first if shipped(type(self.flow)) else None  # of others it is not known that their layers are the same
+        return tuple(Solver(part, self.accuracy, Assembly(part, twin) if part is not parts[0] else first, self.bars)
+                     for part in parts)
 
     def prepare(self, k: np.ndarray) -> None:
         """Evaluate the flow's functions of k, and the weights, for a whole array (count,) at once."""

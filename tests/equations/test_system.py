@@ -8,9 +8,10 @@ import pytest
 
 from stability import flows, spectrum
 from stability.equations.forms import variable
+from stability.equations.layer import Layer
 from stability.equations.system import System
 from stability.errors import ConditionCount, ParameterError
-from stability.flows.poiseuille import EvenPoiseuille, Poiseuille
+from stability.flows.poiseuille import EvenPoiseuille, Poiseuille, profile
 from stability.modes.accuracy import Accuracy
 from stability.modes.dense import finite_rates
 from stability.modes.energy import condition_numbers
@@ -144,6 +145,41 @@ def test_both_parities_together_are_the_whole(degree):
     well = np.abs(whole) < 100  # the largest ones are ill conditioned
     assert well.sum() > 10
     assert distance.min(axis=1)[well].max() < 1e-10
+
+
+@pytest.mark.parametrize("name", [name for name, flow in flows.FLOWS.items() if len(flow().halves()) > 1])
+def test_symmetry_classes_share_their_equations(name):
+    """That is relied on: the equations of one are taken for those of the others."""
+    halves = Solver(flows.FLOWS[name]()).halves
+    first, *others = (half.assembly.system for half in halves)
+    for half, other in zip(halves[1:], others, strict=True):
+        assert other.equations is first.equations
+        assert other == System(half.flow)
+
+
+@dataclass(frozen=True)
+class _Wider(EvenPoiseuille):
+    """A symmetry class that is none: its layer is another one."""
+
+    name: ClassVar[str] = "wider"
+
+    def layers(self, names):
+        return (Layer("fluid", lambda s: profile(s, 4 * self.Re)),)
+
+
+@dataclass(frozen=True)
+class _Split(Poiseuille):
+    """A flow of one's own whose classes do not have the same layer."""
+
+    name: ClassVar[str] = "split"
+
+    def halves(self):
+        return EvenPoiseuille(self.Re), _Wider(self.Re)
+
+
+def test_what_others_say_are_classes_have_equations_of_their_own():
+    for half in Solver(_Split()).halves:
+        assert half.assembly.system == System(half.flow)
 
 
 @pytest.mark.parametrize("half", Poiseuille(Re=300.0).halves(), ids=lambda half: type(half).__name__)
