@@ -129,8 +129,8 @@ class System:
         layers = flow.layers(names)
         self.fields = tuple(f"{layer.name}.{field}" for layer in layers for field in FIELDS)
         self.surfaces, self.reflection = tuple(flow.surfaces), flow.reflection
-        self.equations = twin.equations if twin else tuple(equation for index in range(len(layers))
-                                                           for equation in self._equations(flow, layers, index, names))
+        self.equations: tuple[Equation, ...] = twin.equations if twin else tuple(
+            equation for index in range(len(layers)) for equation in self._equations(flow, layers, index, names))
         edges = SimpleNamespace(**{layer.name: tuple(_edge(layer, end) for end in (0, 1)) for layer in layers})
         given = flow.conditions(edges, names)
         _check_conditions(flow, given)

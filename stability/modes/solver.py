@@ -54,7 +54,7 @@ class Assembly:
 
     @cached_property
     def system(self) -> System:
-        return System(self._flow, self._twin and self._twin.system)
+        return System(self._flow, self._twin.system if self._twin else None)
 
     def pencil(self, degree: int) -> Pencil:
         if degree not in self._pencils:

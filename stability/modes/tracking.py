@@ -7,7 +7,7 @@ and slopes at its two ends fit one smooth curve.
 """
 
 from dataclasses import dataclass
-from math import ceil, copysign, exp, floor, log
+from math import ceil, copysign, exp, floor, log, log2
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -32,12 +32,12 @@ _REAL = 1e-10  # largest imaginary part, relative, of a rate that is real but fo
 _FARTHEST, _BEYOND = 1e6, 1e-4  # lengths of the last step within which a collision is crossed; least way behind it
 _NEARNESS = 1e-3, 1e-5  # relative distances at which a collision is placed by Newton: its error is their square
 _BEND = 0.1  # largest departure of a step from the mean of its end slopes, relative
-_OVERLAP, _TURN = 0.4, 0.3  # largest deviation of the overlap from 1, and the one at which the step length is kept
+_OVERLAP, _TURN = 0.4, 0.35  # largest deviation of the overlap from 1, and the one at which the step length is kept
 _STEPS, _STRETCH = 1000, 100  # attempts, and after how many of them it is asked whether those left can suffice
 _LEAST_WAY = 0.1  # least way in log k in every _STRETCH attempts of a walk that has no end
 _BLIND = 100  # attempts in a row that the largest degree does not resolve
 _TRUST = 0.01  # largest relative error of a mode from which a walk goes on
-_RUNG = 0.05  # spacing in log k of the ladder that a walk without an end lands on
+_RUNG, _ON = 0.05, 1e-6  # spacing in log k of the ladder that a walk without an end lands on; what is next to a rung
 
 
 @dataclass(frozen=True)
@@ -144,8 +144,8 @@ class Walk(Walker):
 
     def factor(self, new: "Mode", guess: complex) -> float:
         miss = abs(new.rate - guess) / (abs(new.rate) + abs(new.k * new.rate_slope)) + _EXACT
-        steady = (_TURN / (self._turn + _EXACT)) ** 0.5  # the overlap deviates by the square of the step
-        return min(2.0, max(0.5, (_PREDICTION / miss) ** (1 / _ORDER)), steady)
+        steady = _TURN / (self._turn + _EXACT)  # to be the square of the factor: so goes the overlap with the step
+        return min(2.0, max(0.5, (_PREDICTION / miss) ** (1 / _ORDER)), 2 ** (floor(log2(steady)) / 2))
 
     def accept(self, to: Any, new: Any) -> None:
         self.before, self.now = self.now, new
@@ -256,7 +256,7 @@ def _rung(k: float, step: float) -> float:
     """The wavenumber a step in log k away, or the last rung of the ladder before it if that is not much nearer."""
     ahead = k * exp(step)
     index = log(ahead) / _RUNG
-    rung = exp(_RUNG * (floor(index) if step > 0 else ceil(index)))
+    rung = exp(_RUNG * (floor(index + _ON) if step > 0 else ceil(index - _ON)))
     return rung if abs(log(rung / k)) > 0.5 * abs(step) and (rung - k) * step > 0 else ahead
 
 

@@ -9,7 +9,7 @@ import pytest
 import references
 
 from stability import ModeLost, dispersion, flows, spectrum
-from stability.modes import branch, crests, memory
+from stability.modes import branch, crests, memory, tracking
 from stability.modes.accuracy import Accuracy
 from stability.modes.branch import surface_branch, surface_mode
 from stability.modes.solver import Solver
@@ -270,7 +270,30 @@ def test_what_lands_on_another_mode_is_refined_alone(monkeypatch):
     memory.forget()
 
 
-CROWDED, CROSSING = (flows.Dune(shields=10.0, Re=0.3), 8.1), (flows.Vortex(slope_deg=21.215735, Fr2=0.77673), 2.0)
+@pytest.mark.parametrize("flow", [flows.Chute(), flows.PlaneShear(), flows.Plate()], ids=str)
+def test_steps_are_as_long_as_vectors_let_them(monkeypatch, flow):
+    """Where vectors turn faster than rates bend, no step is tried in vain; by the rates alone many are."""
+    tried, stride = [], Walk.stride
+
+    def watched(walk, to, length):
+        tried.append(stride(walk, to, length))
+        return tried[-1]
+
+    monkeypatch.setattr(Walk, "stride", watched)
+    counts = []
+    for turn in (tracking._TURN, 1e9):
+        monkeypatch.setattr(tracking, "_TURN", turn)
+        memory.forget()
+        tried.clear()
+        dispersion(flow, [0.05, 1.0], mode="leading", strict=False)
+        counts.append((len(tried), tried.count(False)))
+    memory.forget()
+    (now, failed), (before, in_vain) = counts
+    assert failed == 0 < in_vain
+    assert now < before
+
+
+CROWDED, CROSSING = (flows.Dune(shields=10.0, Re=0.3), 8.1), (flows.Vortex(slope_deg=21.12628434, Fr2=0.769606627), 2.0)
 OTHERS = {check: tuple(other for other in Walk.checks if other != check) for check in Walk.checks}
 
 
