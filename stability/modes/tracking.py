@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from .mode import Mode
     from .solver import Solver
 
-_LARGEST_STEP = 0.6  # in log k
+_LARGEST_STEP = 0.55  # in log k
 _CLOSE = 0.02  # step below which a collision is looked for, and a rough walk goes on with full accuracy
 _NARROW = 5e-3  # step that tells of another mode near by
 PACE = Pace(0.3, _LARGEST_STEP, 1e-8)
