@@ -11,7 +11,8 @@ from ..checks import check_flag, check_options, check_range
 from ..errors import ModeLost, NotResolved, naming
 from ..flows.base import check_flow
 from ..modes.accuracy import DEGREES, TOLERANCE, check_accuracy
-from ..modes.crests import Maximum, crest, crest_mode, look, may_grow, search_of, surface_look
+from ..modes.crest import Maximum, crest
+from ..modes.crests import crest_mode, look, may_grow, search_of, surface_look
 from ..modes.listing import listed
 from ..modes.short_waves import Strip, ill_posed_strips
 from ..modes.solver import Assembly, Solver

@@ -18,7 +18,8 @@ import numpy as np
 
 from ..errors import ModeLost, ParameterError
 from ..modes.branch import surface_mode
-from ..modes.crests import ROUGH, crest_mode, look, middle_of, search_of, surface_look
+from ..modes.crest import middle_of
+from ..modes.crests import ROUGH, crest_mode, look, search_of, surface_look
 from ..numerics.walker import Pace, Walker, towards
 from .plane import Plane, Point
 

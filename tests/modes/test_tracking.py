@@ -9,7 +9,7 @@ import pytest
 import references
 
 from stability import ModeLost, dispersion, flows, spectrum
-from stability.modes import branch, crests, memory, tracking
+from stability.modes import branch, crest, memory, tracking
 from stability.modes.accuracy import Accuracy
 from stability.modes.branch import surface_branch, surface_mode
 from stability.modes.solver import Solver
@@ -375,8 +375,8 @@ def test_a_step_towards_a_crest_that_lands_on_another_mode_is_walked(monkeypatch
     solver = Solver(film)
     solve, first = solver.solve, [other]
     monkeypatch.setattr(solver, "solve", lambda *question: first.pop() if first else solve(*question))
-    monkeypatch.setattr(crests, "_OVERLAP", overlap)
+    monkeypatch.setattr(crest, "_OVERLAP", overlap)
     near = dispersion(film, 1.0).modes[0]
-    found, _ = crests._moved(solver, near, right.k)
+    found, _ = crest._moved(solver, near, right.k)
     assert not first
     assert (abs(found.sigma - right.sigma) < 1e-10) == keeps
