@@ -17,7 +17,8 @@ import numpy as np
 from ..checks import shown
 from ..errors import ConditionCount, ParameterError
 from .forms import Form, variable
-from .layer import FIELDS, ODD_WITH_W, residuals, resolved
+from .layer import FIELDS, ODD_WITH_W, resolved
+from .template import coefficients
 
 if TYPE_CHECKING:
     from .layer import Layer, Profile
@@ -130,7 +131,7 @@ class System:
         self.fields = tuple(f"{layer.name}.{field}" for layer in layers for field in FIELDS)
         self.surfaces, self.reflection = tuple(flow.surfaces), flow.reflection
         self.equations: tuple[Equation, ...] = twin.equations if twin else tuple(
-            equation for index in range(len(layers)) for equation in self._equations(flow, layers, index, names))
+            equation for index in range(len(layers)) for equation in self._equations(flow, layers, index))
         edges = SimpleNamespace(**{layer.name: tuple(_edge(layer, end) for end in (0, 1)) for layer in layers})
         given = flow.conditions(edges, names)
         _check_conditions(flow, given)
@@ -179,23 +180,19 @@ class System:
         """Terms of the longest series."""
         return max(len(series) for equation in self.equations for *_, series in equation.terms)
 
-    def _equations(self, flow: Any, layers: tuple[Any, ...], index: int, names: Any) -> Iterator[Any]:
-        layer = layers[index]
-        fields = [variable(f"{layer.name}.{field}") for field in FIELDS]
-        slopes = [variable(f"{layer.name}.{field}'") for field in FIELDS]
-        rate = 0.0 if layer.steady else names.rate
-        keys = []
+    def _equations(self, flow: Any, layers: tuple[Any, ...], index: int) -> Iterator[Any]:
+        layer, keys = layers[index], []
 
-        def coefficients(base: "Profile", s: np.ndarray) -> list[Any]:
-            forms = residuals(base, names.k, rate, fields, slopes, flow.order)
-            keys[:] = [(equation, product) for equation, form in enumerate(forms) for product in form.terms]
-            return [forms[equation].terms[product] for equation, product in keys]
+        def given(base: "Profile", s: np.ndarray) -> list[Any]:
+            found = coefficients(base, flow.order, layer.steady)
+            keys[:] = found
+            return list(found.values())
 
-        fit = resolved(flow, layers, index, coefficients)
+        fit = resolved(flow, layers, index, given)
         cuts, longest = fit.cut.tolist(), max(map(len, fit.series)) if len(layers) >= _MANY else 0
         for equation, name in enumerate(_EQUATIONS):
-            here = [(*self._split(product), _rounded(series, longest), cut)
-                    for (index, product), series, cut in zip(keys, fit.series, cuts, strict=True)
+            here = [(*self._split((f"{layer.name}.{unknown}", *symbols)), _rounded(series, longest), cut)
+                    for (index, unknown, symbols), series, cut in zip(keys, fit.series, cuts, strict=True)
                     if index == equation and (len(series) > 1 or series[0])]
             yield Equation(f"{layer.name}: {name}", tuple(term[:3] for term in here),
                            layer.singular if name == "shear rate" else 0,
