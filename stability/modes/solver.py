@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from functools import cached_property, lru_cache
-from math import log
+from math import ceil, log
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -262,7 +262,8 @@ class Solver:
         """
         modes, (x, y), pencil = [], vectors, self.pencil(degree)
         entries = (pencil.iterated(len(wavenumbers)) or pencil).entries
-        count = max(1, min(_TOGETHER[0], _TOGETHER[1] // entries))
+        batches = ceil(len(wavenumbers) / max(1, min(_TOGETHER[0], _TOGETHER[1] // entries)))
+        count = ceil(len(wavenumbers) / batches)
         for first in range(0, len(wavenumbers), count):
             part = slice(first, first + count)
             eigen = refine_many(pencil, self.weights(wavenumbers[part]),
