@@ -84,7 +84,7 @@ def surface_look(solver: "Solver", low: float, high: float, growing: bool = Fals
     there is no such regime.
     """
     rough, finer = solver.rough(ROUGH), solver.rough(_FINER)
-    with branch_of(solver, surface_branch, [high]) as branch:
+    with branch_of(solver, surface_branch, [high, _VANISHING]) as branch:
         start = _long_waves(branch, low)
         lost = None if branch.reach(high) else branch.why_lost(high)
         nodes = [node for part in branch.segments for node in part if start <= node.k]
