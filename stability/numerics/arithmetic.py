@@ -16,6 +16,7 @@ from .stack import square
 
 _EPS = np.finfo(float).eps
 _TINY = np.finfo(float).tiny
+_OFF = 0.0, 4 * _EPS, 64 * _EPS, 1024 * _EPS  # relative distances from a rate at which its matrix is factorised
 
 
 @dataclass(slots=True)
@@ -72,12 +73,12 @@ class Arithmetic:
         return Iterated((x, y), (dx, dy), np.array((x_sizes, y_sizes)).swapaxes(0, 1), factors.uneven, ahead)
 
     def factors(self, weights: np.ndarray, rate: Any) -> Any:
-        """LU factors of A - rate B at one point, next to the rate where that is an eigenvalue to the last bit."""
-        for _ in range(3):
+        """LU factors of A - rate B at one point, next to the rate where that is an eigenvalue to the last bits."""
+        for off in _OFF:
             try:
-                return self._pencil.factors(weights, rate)
+                return self._pencil.factors(weights, rate * (1 + off) + _TINY * bool(off))
             except np.linalg.LinAlgError:
-                rate = rate * (1 + 4 * _EPS) + _TINY
+                continue
         raise ModeLost(f"the equations are singular near the rate {complex(rate):.6g}")
 
     def brackets(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:

@@ -1,13 +1,16 @@
 """Inverse iteration: what is told of matrices whose factors lose digits."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from stability import dispersion, flows
+from stability import ModeLost, dispersion, flows
 from stability.modes import dense
 from stability.modes.dense import finite_rates
 from stability.modes.solver import Solver
 from stability.numerics import refine
+from stability.numerics.arithmetic import Arithmetic
 
 UNEVEN = flows.Dune(shields=9.14387521184334, mu1=992.7514530779238, b=2.846689817185222, Re=236117451046.43802,
                     depth=3.5815408193692813e-06, fluid="layer"), 8.714937674024775e-06
@@ -64,3 +67,24 @@ def test_how_many_eigenvalues_are_finite_does_not_depend_on_sizes(extreme):
 @pytest.mark.parametrize(("errors", "settled"), [((0.5, 0.5), True), ((2.0, 0.5), False), ((0.5, 2.0), False)])
 def test_both_vectors_must_be_right(errors, settled):
     assert bool(refine._settled(*(error * refine.VECTOR for error in errors))) is settled
+
+
+@pytest.mark.parametrize("rate", [1.0, 1.0 + 2.0j, 0.0])
+@pytest.mark.parametrize(("singular", "found"), [(2, True), (40, True), (1e5, False)])
+def test_a_matrix_that_is_singular_for_some_roundings_is_factorised_beside_them(rate, singular, found):
+    """As many roundings around an eigenvalue may give a pivot of 0 exactly."""
+    tried = []
+
+    def factors(weights, at):
+        tried.append(at)
+        if abs(at - rate) <= singular * np.finfo(float).eps * abs(rate):
+            raise np.linalg.LinAlgError
+        return at
+
+    arithmetic = Arithmetic(SimpleNamespace(factors=factors))
+    if found:
+        assert abs(arithmetic.factors(None, rate) - rate) < 1e-12
+        assert tried[0] == rate
+    elif rate:
+        with pytest.raises(ModeLost, match="singular near"):
+            arithmetic.factors(None, rate)
