@@ -9,8 +9,9 @@ wavenumber that is the flow's own.
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import pairwise
-from math import copysign, log
+from math import copysign, log, log10
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -30,10 +31,11 @@ if TYPE_CHECKING:
     from .solver import Solver
 
 _ROUGH = 1e-4  # tolerance of the walk; what is asked for is refined to full accuracy
-_FIRST, _FACTOR, _TRIES = 0.04, 5.0, 30  # wavenumbers at which the long-wave limit is sought: each a part of the last
+_FIRST, _APART, _TRIES = 10**-1.25, 0.75, 30  # where the long-wave limit is sought: so many decades apart
+_PACE = replace(PACE, first=PACE.largest)  # of a mode that obeys a law where it starts
 _AGREEMENT = 0.03  # of the surface mode with its long-wave limit, in value and in slope
 _CONFIRMED = 3  # wavenumbers in a row, each a part of the last, at which it must agree
-LOOKS = tuple(_FIRST / _FACTOR**look for look in range(_CONFIRMED))  # the first at which it is sought
+LOOKS = tuple(10 ** (log10(_FIRST) - _APART * look) for look in range(_CONFIRMED))  # the first at which it is sought
 _NO_FARTHER = 1.5, 1e-3  # factor in its distance from the limit that each may have over the one before, and a floor
 _TENDS, _CLOSE = 0.5, 1e-3  # limit of the difference over that at the last of them where a law is wrong; its accuracy
 _GLANCE = 0.3  # relative distance of a rate from a long-wave limit at which a mode that is foreseen may be meant
@@ -272,14 +274,14 @@ def surface_branch(solver: "Solver", known: "dict[float, Mode] | None" = None) -
     `known` are modes of a flow that is nearly the same, {k: mode}.
     """
     rough, seen = rough_solver(solver, known), []
-    return Branch(solver, surface_mode(rough, seen=seen), rough, seen)
+    return Branch(solver, surface_mode(rough, seen=seen), rough, seen, pace=_PACE)
 
 
 def surface_mode(solver: "Solver", highest: float = _FIRST, seen: list[Any] | None = None) -> "Mode":
     """Return the slow surface mode at a wavenumber <= `highest` from which on it obeys its long-wave limit.
 
-    Value and logarithmic slope must agree there, and again at a fifth and a twenty-fifth of it, no worse: another mode
-    can meet one of them by chance. The list `seen` collects what was looked at.
+    Value and logarithmic slope must agree there, and again at a sixth and a thirtieth of it, no worse: another mode can
+    meet one of them by chance. The list `seen` collects what was looked at.
     """
     agreeing = []
     for k, limit, exponent in _laws(solver, highest):
@@ -305,7 +307,7 @@ def surface_mode(solver: "Solver", highest: float = _FIRST, seen: list[Any] | No
 
 def _laws(solver: "Solver", highest: float) -> Iterator[Any]:
     """Yield the wavenumbers that are tried, from the highest down, with the long-wave limit and its exponent."""
-    tried = highest / _FACTOR ** np.arange(_TRIES)
+    tried = np.array([10 ** (log10(highest) - _APART * look) for look in range(_TRIES)])
     for first in range(0, _TRIES, _CONFIRMED):
         few = tried[first: first + _CONFIRMED]
         if not solver.foresight:

@@ -7,7 +7,7 @@ and slopes at its two ends fit one smooth curve.
 """
 
 from dataclasses import dataclass
-from math import ceil, copysign, exp, floor, log, log2
+from math import ceil, copysign, exp, floor, log, log2, log10
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +20,9 @@ if TYPE_CHECKING:
     from .mode import Mode
     from .solver import Solver
 
-_LARGEST_STEP = 0.55  # in log k
+_RUNGS = 4, 48  # per decade, of the ladders that a walk without an end lands on: on the first one by its largest steps
+_ON = 1e-6  # distance from a rung, in those between two, that is none
+_LARGEST_STEP = log(10) / _RUNGS[0]  # in log k
 _CLOSE = 0.02  # step below which a collision is looked for, and a rough walk goes on with full accuracy
 _NARROW = 5e-3  # step that tells of another mode near by
 PACE = Pace(0.3, _LARGEST_STEP, 1e-8)
@@ -37,7 +39,6 @@ _STEPS, _STRETCH = 1000, 100  # attempts, and after how many of them it is asked
 _LEAST_WAY = 0.1  # least way in log k in every _STRETCH attempts of a walk that has no end
 _BLIND = 100  # attempts in a row that the largest degree does not resolve
 _TRUST = 0.01  # largest relative error of a mode from which a walk goes on
-_RUNG, _ON = 0.05, 1e-6  # spacing in log k of the ladder that a walk without an end lands on; what is next to a rung
 
 
 @dataclass(frozen=True)
@@ -253,11 +254,14 @@ class Walk(Walker):
 
 
 def _rung(k: float, step: float) -> float:
-    """The wavenumber a step in log k away, or the last rung of the ladder before it if that is not much nearer."""
+    """The wavenumber a step in log k away, or the last rung of a ladder before it if that is not much nearer."""
     ahead = k * exp(step)
-    index = log(ahead) / _RUNG
-    rung = exp(_RUNG * (floor(index + _ON) if step > 0 else ceil(index - _ON)))
-    return rung if abs(log(rung / k)) > 0.5 * abs(step) and (rung - k) * step > 0 else ahead
+    for rungs in _RUNGS:
+        index = log10(ahead) * rungs
+        rung = 10 ** ((floor(index + _ON) if step > 0 else ceil(index - _ON)) / rungs)
+        if abs(log(rung / k)) > 0.5 * abs(step) and (rung - k) * step > 0:
+            return rung
+    return ahead
 
 
 def _told(mode: "Mode") -> complex:

@@ -100,8 +100,9 @@ def test_what_is_far_or_of_another_kind_is_not_asked():
 @one_thread
 def test_foresight_that_misses_is_no_harm():
     solver = Solver(flows.Dune())
-    other = surface_branch(Solver(flows.Film()))
+    other = surface_branch(Solver(flows.TwoLayerCouette()))
     other.reach(1.0)
+    assert 1.0 in other.known  # but two layers have more unknowns than one
     assert foresight.Foresight(solver.rough(1e-4), other.known).at(1.0, 1.0, np.inf) is None
     nothing = SimpleNamespace(k=1.0, degree=12, x=np.zeros(solver.pencil(12).size), y=np.zeros(solver.pencil(12).size))
     assert rough_solver(solver, {1.0: nothing}).foresight.at(1.0, 1.0, np.inf) is None
