@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from .solver import Solver
 
 _ROUGH = 1e-4  # tolerance of the walk; what is asked for is refined to full accuracy
-_FIRST, _APART, _TRIES = 10**-1.25, 0.75, 30  # where the long-wave limit is sought: so many decades apart
+_FIRST, _APART, _TRIES = 10**-1.75, 0.75, 30  # where the long-wave limit is sought: so many decades apart
 _PACE = replace(PACE, first=PACE.largest)  # of a mode that obeys a law where it starts
 _AGREEMENT = 0.03  # of the surface mode with its long-wave limit, in value and in slope
 _CONFIRMED = 3  # wavenumbers in a row, each a part of the last, at which it must agree
