@@ -17,6 +17,7 @@ import numpy as np
 
 from ..equations.layer import numbers
 from ..errors import ModeLost
+from ..flows.sources import shipped
 from ..numerics import chebyshev
 from .branch import surface_branch
 from .listing import near_neutral, same
@@ -44,6 +45,7 @@ _DECADES = 16  # below the search in which the long-wave regime is sought
 _VANISHING = 1e-9  # wavenumber that stands for 0
 _AGREEMENT = 0.03  # of the mode there with the long-wave limit
 _POWERS = 0.9, 2.5  # of k, between which growth lies there
+_SHARE, _AHEAD = 0.1, 0.01  # of growth in the limit that makes it of that order; relative way that tells its power
 _FACTOR, _CHANGE = 1.5, 0.3  # of growth, and in its power, from what it is there, in long waves
 _REGIME = 0.02  # change of the local power of the long-wave law in a decade that its own regimes differ by
 _UNEVEN = 0.2  # departure of growth between two nodes from the mean of its end slopes beyond which they get a middle
@@ -227,15 +229,23 @@ def _long_waves(branch: "Branch", low: float) -> float:
 
 
 def _as_k_vanishes(branch: "Branch", k: float) -> tuple[Callable[..., Any], float]:
-    """Growth as a power of k, (function of k, the power), at a wavenumber far below k."""
+    """Growth as a power of k, (function of k, the power), at a wavenumber far below k.
+
+    It is that of the law where growth is of its order, else that of the mode there.
+    """
     solver, start = branch.solver, branch.start
     k = min(_VANISHING, k / _DECADE**3)
-    limit = complex(solver.flow.long_wave(np.array([k]))[0])
-    mode = solver.solve(k, limit / solver.width(k), (start.degree, start.x, start.y))
-    power = k * mode.slope.real / mode.growth_rate if mode.growth_rate else 0.0
-    if abs(mode.sigma / limit - 1) > _AGREEMENT or not _POWERS[0] < power < _POWERS[1]:
+    limit, ahead = (complex(law) for law in solver.flow.long_wave(np.array([k, (1 + _AHEAD) * k])))
+    if abs(limit.real) > _SHARE * abs(limit) and shipped(type(solver.flow)):
+        growth, power = limit.real, log(ahead.real / limit.real) / log(1 + _AHEAD)
+    else:
+        mode = solver.solve(k, limit / solver.width(k), (start.degree, start.x, start.y))
+        growth, power = mode.growth_rate, k * mode.slope.real / mode.growth_rate if mode.growth_rate else 0.0
+        if abs(mode.sigma / limit - 1) > _AGREEMENT:
+            power = 0.0
+    if not _POWERS[0] < power < _POWERS[1]:
         raise ModeLost(f"{solver.flow}: growth follows no power of k at k = {k:.1e}")
-    return lambda other: mode.growth_rate * (other / k) ** power, power
+    return lambda other: growth * (other / k) ** power, power
 
 
 def _last_regime(flow: "Flow", low: float) -> float:

@@ -8,6 +8,9 @@ import pytest
 import references
 
 from stability import NotResolved, dispersion, flows, k_max
+from stability.modes import crests
+from stability.modes.branch import surface_branch
+from stability.modes.solver import Solver
 from stability.studies.kmax import Optimum
 
 
@@ -77,3 +80,24 @@ def test_a_refusal_names_the_flow_once():
     assert str(refusal.value) == lost.status
     with pytest.raises(NotResolved, match="^" + re.escape(f"{flow}: stable: no waves grow")):
         _ = Optimum(flow, (), "stable: no waves grow for k up to 1000").k_max
+
+
+@pytest.mark.parametrize("flow", [flows.Dune(), flows.Dune(Re=1e4, shields=1.2), flows.Vortex(), flows.Vortex(Fr2=3.0)],
+                         ids=str)
+def test_growth_as_k_vanishes_is_that_of_the_law(monkeypatch, flow):
+    """Where growth is of the order of the law nothing is solved for; the mode there grows alike, by the same power."""
+    branch = surface_branch(Solver(flow))
+    growth, power = crests._as_k_vanishes(branch, 1e-3)
+    monkeypatch.setattr(crests, "shipped", lambda kind: False)
+    of_mode, power_of_mode = crests._as_k_vanishes(branch, 1e-3)
+    assert growth(1e-5) == pytest.approx(of_mode(1e-5), rel=1e-4)
+    assert power == pytest.approx(power_of_mode, abs=1e-5)
+
+
+@pytest.mark.parametrize(("flow", "solves"), [(flows.Dune(), 0), (flows.Film(), 1), (flows.Dune(depth=0.01), 1)])
+def test_growth_of_higher_order_than_the_law_is_solved_for(monkeypatch, flow, solves):
+    """The law of a film is a wave alone, that of dunes below a near lid all but a wave."""
+    branch, taken = surface_branch(Solver(flow)), []
+    monkeypatch.setattr(Solver, "solve", lambda *given, solve=Solver.solve: taken.append(1) or solve(*given))
+    crests._as_k_vanishes(branch, 1e-3)
+    assert len(taken) == solves
