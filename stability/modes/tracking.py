@@ -3,7 +3,8 @@
 The predictor extrapolates the rate (cubic, from values and slopes at two points) and the vectors
 (linear) in log k. A step is accepted when the new and old eigenvectors are biorthogonal partners,
 y_old^H B x_new * y_new^H B x_old near 1 (between different modes the product vanishes), and when the rates
-and slopes at its two ends fit one smooth curve.
+and slopes at its two ends fit one smooth curve. The next one is as long as the errors of the predicted rate and the
+turn of the vectors let expect that it is accepted.
 """
 
 from dataclasses import dataclass
@@ -71,7 +72,7 @@ class Walk(Walker):
     """The state of a walk along k: the last two modes, the step in log k, the collisions so far.
 
     `segments` lists the modes visited, a new list after each collision. Where steps get short the walk goes on with
-    the solver `closer`, if there is one.
+    the solver `closer`, if there is one. The first step, and the largest, are those of `pace`.
     """
 
     checks = ("trusted", "same_kind", "smooth", "overlaps")
