@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 _ROUGH = 1e-4  # tolerance of the walk; what is asked for is refined to full accuracy
 _FIRST, _APART, _TRIES = 10**-1.75, 0.75, 30  # where the long-wave limit is sought: so many decades apart
-_PACE = replace(PACE, first=PACE.largest)  # of a mode that obeys a law where it starts
+LAWFUL = replace(PACE, first=PACE.largest)  # of a mode that obeys a law where it starts
 _AGREEMENT = 0.03  # of the surface mode with its long-wave limit, in value and in slope
 _CONFIRMED = 3  # wavenumbers in a row, each a part of the last, at which it must agree
 LOOKS = tuple(10 ** (log10(_FIRST) - _APART * look) for look in range(_CONFIRMED))  # the first at which it is sought
@@ -274,7 +274,7 @@ def surface_branch(solver: "Solver", known: "dict[float, Mode] | None" = None) -
     `known` are modes of a flow that is nearly the same, {k: mode}.
     """
     rough, seen = rough_solver(solver, known), []
-    return Branch(solver, surface_mode(rough, seen=seen), rough, seen, pace=_PACE)
+    return Branch(solver, surface_mode(rough, seen=seen), rough, seen, pace=LAWFUL)
 
 
 def surface_mode(solver: "Solver", highest: float = _FIRST, seen: list[Any] | None = None) -> "Mode":

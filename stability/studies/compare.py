@@ -17,7 +17,7 @@ from ..checks import check_options
 from ..errors import ModeLost, ParameterError
 from ..flows.base import check_flow
 from ..modes.accuracy import DEGREES, Accuracy
-from ..modes.branch import Branch, surface_mode
+from ..modes.branch import LAWFUL, Branch, surface_mode
 from ..modes.dense import finite_rates
 from ..modes.solver import Solver
 from ..numerics.threads import one_thread
@@ -236,9 +236,11 @@ def _followed(flow: "Flow", mode: "Mode", degree: int, points: int) -> "Mode":
     solver.degrees = rough.degrees = (degree,)
     sweep = wavenumbers(mode.k, points)
     solver.prepare(sweep)
-    first = sweep[0]
-    start = surface_mode(rough, first) if flow.has_surface_mode() else rough.solve(first, _guess(mode, first))
-    found, lost = Branch(solver, start, rough).at(sweep)
+    if flow.has_surface_mode():
+        branch = Branch(solver, surface_mode(rough), rough, pace=LAWFUL)
+    else:
+        branch = Branch(solver, rough.solve(sweep[0], _guess(mode, sweep[0])), rough)
+    found, lost = branch.at(sweep)
     for reason in lost.values():
         raise ModeLost(reason)
     return found[mode.k]
