@@ -19,10 +19,10 @@ from ..equations.layer import numbers
 from ..errors import ModeLost
 from ..flows.sources import shipped
 from ..numerics import chebyshev
-from .branch import surface_branch
 from .listing import near_neutral, same
 from .memory import branch_of
 from .short_waves import ill_posed_somewhere
+from .surface import surface_branch
 from .tracking import Walk
 
 if TYPE_CHECKING:

@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..flows.sources import shipped
-from .branch import LOOKS
 from .sidestep import near_enough, sidestepped
+from .surface import LOOKS
 
 if TYPE_CHECKING:
     from ..flows.base import Flow

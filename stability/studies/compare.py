@@ -17,9 +17,10 @@ from ..checks import check_options
 from ..errors import ModeLost, ParameterError
 from ..flows.base import check_flow
 from ..modes.accuracy import DEGREES, Accuracy
-from ..modes.branch import LAWFUL, Branch, surface_mode
+from ..modes.branch import Branch
 from ..modes.dense import finite_rates
 from ..modes.solver import Solver
+from ..modes.surface import LAWFUL, surface_mode
 from ..numerics.threads import one_thread
 from ..output.panels import MARKED, THIN, Axis, Curve, Panel
 from ..output.record import Record

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import ModeLost, ParameterError
-from ..modes.branch import surface_branch
 from ..modes.crests import crest_mode, depth_of
 from ..modes.listing import near_neutral
 from ..modes.memory import branch_of
+from ..modes.surface import surface_branch
 from ..numerics.walker import Pace, Walker, towards
 from .ridges import Landscape, may_turn
 from .thresholds import zero_at

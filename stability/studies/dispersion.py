@@ -10,13 +10,14 @@ from ..checks import check_flag, check_options, check_wavenumbers
 from ..errors import ModeLost, naming
 from ..flows.base import check_flow
 from ..modes.accuracy import DEGREES, TOLERANCE, check_accuracy
-from ..modes.branch import Branch, rough_solver, surface_branch
+from ..modes.branch import Branch, rough_solver
 from ..modes.eigenvalue import Eigenvalues
 from ..modes.listing import leading_modes, listed
 from ..modes.memory import beside, branch_of
 from ..modes.mode import Mode, require
 from ..modes.short_waves import ill_posed_somewhere, ill_posed_strips
 from ..modes.solver import Solver
+from ..modes.surface import surface_branch
 from ..modes.tracking import PACE, Collision, Encounter
 from ..numerics.threads import one_thread
 from ..output.panels import GROWTH_RATE, LINE, PHASE_SPEED, POINTS, WAVENUMBER, Axis, Curve, Panel, scale_of

@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import ModeLost, ParameterError
-from ..modes.branch import surface_mode
 from ..modes.crest import middle_of
 from ..modes.crests import ROUGH, crest_mode, look, search_of, surface_look
+from ..modes.surface import surface_mode
 from ..numerics.walker import Pace, Walker, towards
 from .plane import Plane, Point
 

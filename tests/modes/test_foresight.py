@@ -12,8 +12,9 @@ from test_tracking import random_flows
 from stability import dispersion, flows, k_max, parameter_map, spectrum
 from stability.errors import ParameterError
 from stability.modes import foresight, memory
-from stability.modes.branch import rough_solver, surface_branch
+from stability.modes.branch import rough_solver
 from stability.modes.solver import Solver
+from stability.modes.surface import surface_branch
 from stability.numerics import refine as refinement
 from stability.numerics.threads import one_thread
 

@@ -7,9 +7,9 @@ import pytest
 
 from stability import dispersion, flows
 from stability.modes import memory
-from stability.modes.branch import surface_branch
 from stability.modes.interpolation import interpolated, intervals
 from stability.modes.solver import Solver
+from stability.modes.surface import surface_branch
 
 
 def node(k, degree=8):

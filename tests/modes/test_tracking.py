@@ -11,8 +11,8 @@ import references
 from stability import ModeLost, dispersion, flows, spectrum
 from stability.modes import branch, crest, memory, tracking
 from stability.modes.accuracy import Accuracy
-from stability.modes.branch import surface_branch, surface_mode
 from stability.modes.solver import Solver
+from stability.modes.surface import surface_branch, surface_mode
 from stability.modes.tracking import Walk
 
 

@@ -20,8 +20,8 @@ from stability import NotResolved, dispersion, flows, k_max, spectrum
 from stability.flows import FLOWS
 from stability.modes import dense, listing
 from stability.modes.accuracy import Accuracy
-from stability.modes.branch import surface_branch
 from stability.modes.solver import Solver
+from stability.modes.surface import surface_branch
 from stability.studies.critical import critical
 from stability.studies.neutral import neutral_curve
 from stability.studies.plane import Plane

@@ -9,8 +9,8 @@ import references
 
 from stability import NotResolved, dispersion, flows, k_max
 from stability.modes import crests
-from stability.modes.branch import surface_branch
 from stability.modes.solver import Solver
+from stability.modes.surface import surface_branch
 from stability.studies.kmax import Optimum
 
 
