@@ -88,7 +88,7 @@ EXPORT int NAME(iterate)(const Lines *p, long points, double uneven, double accu
         else if (!NAME(eliminate)(w) || !NAME(eliminate_bottom)(w) || !NAME(invert_corner)(w))
             flags[point] = 2;
         else
-            for (int round = 0; round < 2 && (!round || nearly(sizes, accuracy)); round++)
+            for (int again = 0; again < 2 && (!again || nearly(sizes, accuracy)); again++)
                 for (int left = 0; left < 2; left++)
                     NAME(iterate_side)(w, weights, left, vectors + left * all_of_one, vectors + (2 + left) * all_of_one,
                                        sizes + 3 * left);
