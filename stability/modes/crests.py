@@ -22,7 +22,7 @@ from ..numerics import chebyshev
 from .listing import near_neutral, same
 from .memory import branch_of
 from .short_waves import ill_posed_somewhere
-from .surface import surface_branch
+from .surface import AHEAD, law_ahead, surface_branch
 from .tracking import Walk
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ _DECADES = 16  # below the search in which the long-wave regime is sought
 _VANISHING = 1e-9  # wavenumber that stands for 0
 _AGREEMENT = 0.03  # of the mode there with the long-wave limit
 _POWERS = 0.9, 2.5  # of k, between which growth lies there
-_SHARE, _AHEAD = 0.1, 0.01  # of growth in the limit that makes it of that order; relative way that tells its power
+_SHARE = 0.1  # of growth in the limit that makes it of that order
 _FACTOR, _CHANGE = 1.5, 0.3  # of growth, and in its power, from what it is there, in long waves
 _REGIME = 0.02  # change of the local power of the long-wave law in a decade that its own regimes differ by
 _UNEVEN = 0.2  # departure of growth between two nodes from the mean of its end slopes beyond which they get a middle
@@ -86,7 +86,7 @@ def surface_look(solver: "Solver", low: float, high: float, growing: bool = Fals
     there is no such regime.
     """
     rough, finer = solver.rough(ROUGH), solver.rough(_FINER)
-    with branch_of(solver, surface_branch, [high, _VANISHING]) as branch:
+    with branch_of(solver, surface_branch, [high]) as branch:
         start = _long_waves(branch, low)
         lost = None if branch.reach(high) else branch.why_lost(high)
         nodes = [node for part in branch.segments for node in part if start <= node.k]
@@ -235,9 +235,9 @@ def _as_k_vanishes(branch: "Branch", k: float) -> tuple[Callable[..., Any], floa
     """
     solver, start = branch.solver, branch.start
     k = min(_VANISHING, k / _DECADE**3)
-    limit, ahead = (complex(law) for law in solver.flow.long_wave(np.array([k, (1 + _AHEAD) * k])))
+    limit, ahead = (complex(law[0]) for law in law_ahead(solver.flow, np.array([k])))
     if abs(limit.real) > _SHARE * abs(limit) and shipped(type(solver.flow)):
-        growth, power = limit.real, log(ahead.real / limit.real) / log(1 + _AHEAD)
+        growth, power = limit.real, log(ahead.real / limit.real) / AHEAD
     else:
         mode = solver.solve(k, limit / solver.width(k), (start.degree, start.x, start.y))
         growth, power = mode.growth_rate, k * mode.slope.real / mode.growth_rate if mode.growth_rate else 0.0
@@ -252,8 +252,8 @@ def _last_regime(flow: "Flow", low: float) -> float:
     """The largest wavenumber low / 10^j below which the long-wave law keeps its powers of k."""
     k = low / _DECADE ** np.arange(_DECADES)
     with np.errstate(all="ignore"):
-        here, ahead = np.split(np.asarray(flow.long_wave(np.concatenate((k, 1.01 * k))), dtype=complex), 2)
-        powers = np.array([np.log(np.abs(part(ahead) / part(here))) / log(1.01) for part in (np.real, np.imag)])
+        here, ahead = law_ahead(flow, k)
+        powers = np.array([np.log(np.abs(part(ahead) / part(here))) / AHEAD for part in (np.real, np.imag)])
     powers = np.where(np.isfinite(powers), powers, 0.0)
     changed = np.flatnonzero(np.any(np.abs(np.diff(powers, axis=1)) > _REGIME, axis=0))
     return float(k[changed[-1] + 1 if len(changed) else 0])

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from math import log, log10
+from math import exp, log, log10
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,6 +24,7 @@ _CONFIRMED = 3  # wavenumbers in a row, each a part of the last, at which it mus
 LOOKS = tuple(10 ** (log10(_FIRST) - _APART * look) for look in range(_CONFIRMED))  # the first at which it is sought
 _NO_FARTHER = 1.5, 1e-3  # factor in its distance from the limit that each may have over the one before, and a floor
 _TENDS, _CLOSE = 0.5, 1e-3  # limit of the difference over that at the last of them where a law is wrong; its accuracy
+AHEAD = log(1.01)  # way in log k over which the local power of a long-wave limit is taken
 _GLANCE = 0.3  # relative distance of a rate from a long-wave limit at which a mode that is foreseen may be meant
 
 
@@ -71,8 +72,13 @@ def _laws(solver: "Solver", highest: float) -> Iterator[Any]:
         few = tried[first: first + _CONFIRMED]
         if not solver.foresight:
             solver.prepare(few)
-        limits, ahead = np.split(solver.flow.long_wave(np.concatenate((few, 1.01 * few))), 2)
-        yield from zip(few.tolist(), limits, np.log(ahead / limits) / log(1.01), strict=True)
+        limits, ahead = law_ahead(solver.flow, few)
+        yield from zip(few.tolist(), limits, np.log(ahead / limits) / AHEAD, strict=True)
+
+
+def law_ahead(flow: "Flow", k: np.ndarray) -> list[np.ndarray]:
+    """The long-wave limit at wavenumbers k (points,), and `AHEAD` of there: how it changes tells its powers of k."""
+    return np.split(np.asarray(flow.long_wave(np.concatenate((k, exp(AHEAD) * k))), dtype=complex), 2)
 
 
 def _check_law(flow: "Flow", agreeing: list[tuple[Any, ...]]) -> None:
